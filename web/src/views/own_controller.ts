@@ -15,6 +15,7 @@ import type { Store } from "../store.ts";
 import { formOf, formRows, productRows } from "../words/answer.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { productTitle, typedRows, typedText } from "../words/products.ts";
+import { pasteOf } from "../words/paste.ts";
 import { formulaLine, rememberedForm, rememberForm, settingsOf, settingsText } from "../words/settings.ts";
 import type { TextbookForm } from "../words/settings.ts";
 import { answerCard } from "./cards/answer_card.ts";
@@ -139,6 +140,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       whose: whose(),
       rows: productRows(product, entered, todaysTyped(product)),
       text: typedText(`${heading}: ${whose()}`, typedRows(product, entered)),
+      paste: pasteOf(product.id, entered.as_typed),
       below: productTroubles(settled),
       details: productDetails(product, entered, settled, shown!.units.time),
       choices: typeable() ? (name) => choicesOf(product, name) : null,
@@ -182,6 +184,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       whose: whose(),
       rows,
       text,
+      paste: null,
       below: [h("p", { class: "hint" }, formulaLine(inForm, entry))],
       details: [],
       choices: typeable() ? () => [] : null,
@@ -337,6 +340,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       if (!sameJob) {
         mine = mineOfRequest(next.request.implement, inUnits(mine, next.units));
         picker.setUnits(next.units);
+        picker.setOutput(next.result.model?.fit?.u ?? next.request.record?.u ?? []);
         picker.set(mine);
         nameMine();
         showMine();

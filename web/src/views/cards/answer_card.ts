@@ -2,6 +2,7 @@
 import { breakable, h, say, uniqueId } from "../../dom.ts";
 import type { AnswerRow } from "../../words/answer.ts";
 import { tableText } from "../../words/answer.ts";
+import type { Paste } from "../../words/paste.ts";
 import { copyButton } from "../copy.ts";
 
 export interface Answer {
@@ -12,6 +13,8 @@ export interface Answer {
   rows: AnswerRow[];
   /** For the clipboard. */
   text: string;
+  /** The lines to paste, if the product has such lines. */
+  paste: Paste | null;
   /** What follows the rows, always visible. */
   below: HTMLElement[];
   /** What is folded away. */
@@ -61,10 +64,13 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const change = h("button", { type: "button", class: "quiet", "aria-pressed": "false", onclick: toggle }, "Type other values");
   const refused = h("p", { class: "trouble", role: "status", hidden: true });
+  const pasteOptions = { label: "Copy the lines", text: () => shown?.paste?.text ?? null };
+  const paste = copyButton(pasteOptions, announce);
   const copies = h(
     "div",
     { class: "copies" },
     change,
+    paste,
     copyButton({ label: "Copy as table", look: "quiet", text: () => shown && tableText(shown.rows) }, announce),
     copyButton({ label: "Copy", spoken: "Copy all with units", text: () => shown?.text ?? null }, announce),
   );
@@ -144,6 +150,9 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
       say(caption, `${answer.heading.join("")}; ${answer.whose}`);
       if (!answer.choices) typing = false;
       change.hidden = !answer.choices;
+      paste.hidden = !answer.paste;
+      const pasteLabel = `Copy for ${answer.paste?.place ?? ""}`;
+      if (pasteOptions.label !== pasteLabel) say(paste, (pasteOptions.label = pasteLabel));
       change.setAttribute("aria-pressed", String(typing));
       refuse("");
       showRows(answer.rows);

@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { openDesign, PLANT, setting, shows } from "../design_page.mjs";
 import { accessibilityViolations, browserTests, overflow } from "../harness.mjs";
+import { germanTrend, heaterLog } from "../made_records.mjs";
 import { assertRequestIsShown, requestHandedOut, watchCalls } from "../shown_request.mjs";
 
 const tests = browserTests();
@@ -144,3 +145,88 @@ for (const [window, options] of [["desktop", {}], ["1280 x 720", { width: 1280, 
       }
     });
   });
+
+/** Acts by roles and names alone, as somebody does who hears the page, and counts the actions. */
+function person(page) {
+  const counts = { clicks: 0, fields: 0 };
+  return {
+    counts,
+    async click(role, name) {
+      counts.clicks += 1;
+      await page.getByRole(role, { name, exact: true }).click();
+    },
+    /** The dialog for a file is one click. */
+    async file(name, text) {
+      counts.clicks += 1;
+      await page.getByLabel("CSV file").setInputFiles({ name, mimeType: "text/csv", buffer: Buffer.from(text) });
+    },
+    async fill(field, text, key = "Tab") {
+      counts.fields += 1;
+      await field.fill(text);
+      await field.press(key);
+    },
+  };
+}
+
+/** Types a product's name, and takes the first that is found. */
+async function chooseProduct(page, who, words, title) {
+  const picker = page.getByRole("combobox", { name: "Maker and product" });
+  await picker.fill("");
+  await who.fill(picker, words, "ArrowRight");
+  await page.getByRole("option", { name: title }).waitFor();
+  await picker.press("Enter");
+}
+
+test("from a German trend to the settings of a DeltaV: three fields, four clicks, with the file's units and tag", async () => {
+  await withPage("", {}, async (page) => {
+    await page.context().grantPermissions(["clipboard-read", "clipboard-write"], { origin: tests.service.base });
+    await page.waitForLoadState("networkidle");
+    const who = person(page);
+    await who.file("Trend.csv", germanTrend());
+    await who.click("button", "Use and tune");
+    await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+    await page.getByRole("heading", { name: "TIC101", exact: true }).waitFor();
+    await chooseProduct(page, who, "deltav standard", "Emerson DeltaV PID, FORM Standard");
+    const range = page.getByRole("group", { name: "Measurement range (°C)" });
+    await who.fill(range.getByRole("textbox", { name: "from" }), "0");
+    await who.fill(range.getByRole("textbox", { name: "to" }), "200");
+    await page.getByRole("heading", { name: "Type into Emerson DeltaV PID, FORM Standard" }).waitFor();
+    await who.click("button", "Design for this controller");
+    await page.getByRole("button", { name: "Design for this controller" }).waitFor({ state: "hidden" });
+    await page.waitForFunction(() => !document.querySelector(".own-controller[aria-busy]"));
+    await who.click("button", "Copy all with units");
+    await page.getByRole("button", { name: "Copied" }).waitFor();
+    const lines = (await page.evaluate(() => navigator.clipboard.readText())).split("\n");
+    const { request, result } = await tests.jobOf(page);
+    const { as_typed: typed } = result.controllers[0].as_entered;
+    assert.equal(lines[1], `GAIN = ${typed.GAIN} %/%`);
+    assert.ok(lines.includes(`STRUCTURE = ${typed.STRUCTURE}`), lines.join("; "));
+    assert.deepEqual(request.units, { u: "%", y: "°C" });
+    assert.equal(request.name, "TIC101");
+    assert.deepEqual([request.implement.y_span, request.implement.u_span], [[0, 200], [0, 100]]);
+    assert.deepEqual(who.counts, { clicks: 4, fields: 3 });
+  });
+});
+
+test("from a heater's log to the lines of printer.cfg: three clicks", async () => {
+  await withPage("", {}, async (page) => {
+    await page.context().grantPermissions(["clipboard-read", "clipboard-write"], { origin: tests.service.base });
+    await page.waitForLoadState("networkidle");
+    const who = person(page);
+    await who.file("hotend.csv", heaterLog());
+    await who.click("button", "Use and tune");
+    await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+    await chooseProduct(page, who, "klipper", "Klipper heater");
+    await page.getByRole("heading", { name: /^Type into Klipper/ }).waitFor();
+    await who.click("button", "Copy text: printer.cfg, in [extruder] or [heater_bed] instead of the lines of these names");
+    await page.getByRole("button", { name: "Copied" }).waitFor();
+    const rows = Object.fromEntries((await rowsOf(page)).map(([label, , value]) => [label, value]));
+    assert.equal(
+      await page.evaluate(() => navigator.clipboard.readText()),
+      ["control: pid", ...["pid_Kp", "pid_Ki", "pid_Kd", "smooth_time"].map((name) => `${name}: ${rows[name]}`)].join("\n"),
+    );
+    const output = page.getByRole("group", { name: /^Output range/ });
+    assert.deepEqual([await output.getByLabel("from").inputValue(), await output.getByLabel("to").inputValue()], ["0", "1"]);
+    assert.deepEqual(who.counts, { clicks: 3, fields: 1 });
+  });
+});

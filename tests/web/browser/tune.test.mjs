@@ -74,8 +74,9 @@ test("settings change their form and are copied with all their digits", async ()
     await page.getByRole("button", { name: "Tune this model" }).click();
     await designShown(page);
     const [entry] = (await jobOf(page)).result.controllers;
-    await page.getByRole("radio", { name: "parallel" }).check();
-    await page.getByRole("button", { name: "Copy" }).click();
+    await page.getByRole("combobox", { name: "Maker and product" }).fill("parallel");
+    await page.getByRole("option", { name: "Parallel form" }).click();
+    await page.getByRole("button", { name: "Copy all with units" }).click();
     await page.getByRole("button", { name: "Copied" }).waitFor();
     const copied = await page.evaluate(() => navigator.clipboard.readText());
     const Ki = Number(/^Ki = (\S+)/m.exec(copied)[1]);
@@ -341,7 +342,7 @@ test("an address of a job that does not exist says so", async () => {
   const opened = await openPage(tests.browser);
   try {
     await opened.page.goto(`${tests.service.base}/#/jobs/00000000-0000-0000-0000-000000000000/design`);
-    await opened.page.locator(".trouble").filter({ hasText: /\S/ }).waitFor();
+    await opened.page.locator(".trouble:visible").filter({ hasText: /\S/ }).waitFor();
   } finally {
     await opened.close();
   }

@@ -18,6 +18,8 @@ export interface SpanFields {
   read(): SpanReading;
   set(span: Span | undefined): void;
   setUnit(unit: string): void;
+  /** Neither end has a text. */
+  isEmpty(): boolean;
 }
 
 export function spanFields(
@@ -49,6 +51,7 @@ export function spanFields(
     setUnit(text) {
       unit.textContent = text ? ` (${text})` : "";
     },
+    isEmpty: () => ends.every((end) => end.input.value.trim() === ""),
   };
 }
 

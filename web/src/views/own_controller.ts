@@ -338,6 +338,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       if (!sameJob) {
         mine = mineOfRequest(next.request.implement, inUnits(mine, next.units));
         picker.setUnits(next.units);
+        picker.setOutput(next.result.model?.fit?.u ?? next.request.record?.u ?? []);
         picker.set(mine);
         nameMine();
         showMine();

@@ -14,6 +14,7 @@ import type { MyController } from "../my_controller.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { unitNames } from "../words/numbers.ts";
+import { namesOf } from "../words/record_names.ts";
 import { equationsCard } from "./cards/equations_card.ts";
 import { exampleElement } from "./cards/example_element.ts";
 import { methodsCard } from "./cards/methods_card.ts";
@@ -99,6 +100,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   });
   const record = recordCard(errors, {
     onIdentify: identifyRecord,
+    onRead: (preview) => today.propose(namesOf(preview)),
     onNew: () => (loop === null ? (loop = "record") : beginLoop("record")),
     onTune: () => void tuneRecord(false),
     onCompare: () => void tuneRecord(true),

@@ -12,6 +12,7 @@ import type { MyController } from "../../my_controller.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 import { TEXTBOOK_FORMS, formTitle } from "../../words/settings.ts";
 import type { TextbookForm } from "../../words/settings.ts";
+import { usualSpan } from "../../words/record_names.ts";
 import { evidenceWords, findProducts, needSentence, productTitle } from "../../words/products.ts";
 
 const formChoice = (form: TextbookForm): Choice => ({ id: form, text: formTitle(form), aside: "" });
@@ -28,6 +29,8 @@ export interface MyControllerCard {
   facts: HTMLElement;
   setProducts(products: ProductSummary[]): void;
   setUnits(units: UnitNames): void;
+  /** The values of u in the loop's record, which tell its range if its unit does not. */
+  setOutput(values: readonly (number | null)[]): void;
   /** Without reporting. `form`: the textbook form that stands in place of a product, where forms are offered. */
   set(mine: MyController | null, form?: TextbookForm): void;
   /** The content of the fields. A missing fact is not a fault: the card names it. */
@@ -48,6 +51,7 @@ export function myControllerCard(
 ): MyControllerCard {
   let products: ProductSummary[] = [];
   let units: UnitNames | null = null;
+  let recorded: readonly (number | null)[] = [];
   let chosen: Pick<MyController, "product" | "name" | "needs"> | null = null;
   let form: TextbookForm = "ideal";
   const title = h("h2", { id: uniqueId("mine") }, "My controller ", h("span", { class: "optional" }, "optional"));
@@ -107,8 +111,21 @@ export function myControllerCard(
     form = TEXTBOOK_FORMS.find((name) => name === choice?.id) ?? form;
     const product = products.find((item) => item.id === choice?.id);
     chosen = product ? { product: product.id, name: productTitle(product), needs: product.needs as Need[] } : null;
+    propose();
     show();
     change();
+  }
+
+  /** The usual ranges, where none is given. They are seen before they are used. */
+  function propose(): void {
+    for (const [need, field, usual] of [
+      ["y_span", measurement, usualSpan(units?.y ?? "")],
+      ["u_span", output, usualSpan(units?.u ?? "", recorded)],
+    ] as const) {
+      if (!chosen?.needs.includes(need) || !usual || !field.isEmpty()) continue;
+      field.set(usual);
+      facts.open = true;
+    }
   }
 
   /** Shows the fields that the chosen product needs, and no others. */
@@ -173,6 +190,9 @@ export function myControllerCard(
       measurement.setUnit(units.y);
       output.setUnit(units.u);
       sampling.setUnit(units.time);
+    },
+    setOutput(values) {
+      recorded = values;
     },
     set(mine, given) {
       form = given ?? form;

@@ -23,6 +23,8 @@ export interface RecordCardEvents {
   onIdentify(): void;
   /** A new record was given. */
   onNew(): void;
+  /** The columns were read. */
+  onRead(preview: Preview): void;
   /** Tunes directly. */
   onTune(): void;
   /** By every method. */
@@ -123,12 +125,17 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
   /** True if the record can be read; otherwise it shows what is missing, and where to choose it. */
   function show(preview: Preview): boolean {
     beginLook();
-    shown.replaceChildren(previewPanel(preview));
-    fields.offer(preview);
+    offer(preview);
     if (preview.problems.length === 0) return true;
     reading.open = true;
     errors.show(preview.problems);
     return false;
+  }
+
+  function offer(preview: Preview): void {
+    shown.replaceChildren(previewPanel(preview));
+    fields.offer(preview);
+    events.onRead(preview);
   }
 
   /** Previews pasted text, or text with other reading options, again. */
@@ -138,8 +145,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     try {
       const preview = await previewRecord({ ...fields.read().record, csv: csv.read() });
       if (!isNewest()) return;
-      shown.replaceChildren(previewPanel(preview));
-      fields.offer(preview);
+      offer(preview);
     } catch {
       // The identification reports the fault.
     }

@@ -11,6 +11,7 @@ import { typedParts } from "../../form/typed.ts";
 import { mineOfRequest, typedBaseline } from "../../my_controller.ts";
 import type { MyController } from "../../my_controller.ts";
 import { exactText } from "../../words/numbers.ts";
+import type { RecordNames } from "../../words/record_names.ts";
 
 export interface TodayCard {
   element: HTMLElement;
@@ -21,6 +22,8 @@ export interface TodayCard {
   read(): { baseline: Baseline | undefined; errors: FieldError[] };
   load(units: Units | undefined, baseline: Baseline | undefined, name: string | undefined): void;
   readName(): string;
+  /** Names that a file tells: written where nothing is typed. */
+  propose(names: RecordNames): void;
   /** A new loop: values that were filled in, or belonged to the previous loop, are cleared; values typed for this
       one stay. */
   beginLoop(): void;
@@ -233,6 +236,11 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       typed.forget();
       loadLabels(units, loopName);
       loadBaseline(baseline);
+      onUnits();
+    },
+    propose(names) {
+      for (const [part, text] of [["u", names.u], ["y", names.y], ["name", names.tag]] as const)
+        if (text !== "" && labels[part].input.value.trim() === "") labels[part].input.value = text;
       onUnits();
     },
     beginLoop() {

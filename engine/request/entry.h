@@ -9,6 +9,7 @@
 #include "engine/evaluation/evaluation.h"
 #include "engine/request/device_entry.h"
 #include "engine/request/optimum_at_ms.h"
+#include "engine/request/replay/replay_entry.h"
 #include "engine/request/verdict/finding.h"
 #include "engine/tuning/method/method.h"
 
@@ -52,6 +53,7 @@ struct TuningEntry {
     std::optional<OptimumAtMs> optimum_at_Ms;  ///< where asked for
     std::optional<double> best_PI_load_IAE;    ///< beside a robust PID: of the robust PI within the same limits
     std::optional<DeviceEntry> on_device;      ///< where asked for and possible
+    std::optional<ReplayedEntry> replay;       ///< of a record that is replayed: its hour with this controller
     std::optional<Standing> standing;          ///< of what was tuned, and of the baseline
     /// The longest sample time of a program with backward rules that keeps Ms within 5 %; of designs.
     std::optional<Figure> longest_sample_time;

@@ -87,6 +87,9 @@ std::optional<Level> overshoot_level(
     const VerdictInput& c);                       ///< of that finding, known without the search for what keeps it
 OptionalFinding movement(const VerdictInput& c);  ///< of u, against today's
 
+// replayed.cpp
+OptionalFinding replayed(const VerdictInput& c);  ///< the recorded hour with this controller, against what it was
+
 // actuator.cpp
 /// Steps for which u has to be beyond its limits at rest, whatever the controller.
 struct StepsBeyondActuator {

@@ -1,0 +1,44 @@
+#include "engine/request/replay/replay_entry.h"
+
+namespace tunewright {
+
+const char* name_of(ReplayRefusal refusal) {
+    switch (refusal) {
+        case ReplayRefusal::manual: return "manual";
+        case ReplayRefusal::no_set_point: return "no-set-point";
+        case ReplayRefusal::doubtful_model: return "doubtful-model";
+        case ReplayRefusal::unknown_region: return "unknown-region";
+        case ReplayRefusal::no_error: return "no-error";
+        case ReplayRefusal::no_law: return "no-law";
+        case ReplayRefusal::unstable: return "unstable";
+        case ReplayRefusal::wide_band: return "wide-band";
+    }
+    return "manual";
+}
+
+const char* reason_of(ReplayRefusal refusal) {
+    switch (refusal) {
+        case ReplayRefusal::manual:
+            return "The record shows no controller in automatic, so there is no error of a loop to compare with. Send a "
+                   "record of normal operation in automatic.";
+        case ReplayRefusal::no_set_point:
+            return "The set point is not recorded, so the error is not known. Send its column too.";
+        case ReplayRefusal::doubtful_model:
+            return "The warnings about the model say that it may be another plant. A record with two or three moves of "
+                   "the set point gives a better one.";
+        case ReplayRefusal::unknown_region:
+            return "The model has no standard errors, so the error of a replay is not known.";
+        case ReplayRefusal::no_error:
+            return "The recorded error is hardly more than the noise of y, which no settings change. Send a record in "
+                   "which something moves the loop.";
+        case ReplayRefusal::no_law: return "The nonlinear integral of this controller is not replayed.";
+        case ReplayRefusal::unstable:
+            return "The loop is unstable on the model or on a plant that the record leaves possible.";
+        case ReplayRefusal::wide_band:
+            return "The record leaves the plant too uncertain to say what these settings would have done. A record with "
+                   "more or larger moves of the set point narrows that.";
+    }
+    return "";
+}
+
+}  // namespace tunewright

@@ -7,13 +7,6 @@ namespace {
 
 using enum ReplayRefusal;
 
-Codec<int> count() {
-    return {{}, [](const int& value, Writer& out) { out.integer(value); },
-            [](SchemaBook&) {
-                return Json{{"type", "integer"}};
-            }};
-}
-
 Codec<std::vector<double>> thinned(Codec<std::vector<double>> columns) {
     return unless<std::vector<double>>(std::move(columns), [](const auto& values) { return values.empty(); });
 }
@@ -39,7 +32,7 @@ void add_refusal(Description<Replay>& d, const Json& codes, const char* sentence
         sentence, {}, [](const Replay& replay) { return !replay.refused; });
 }
 
-Json names(std::initializer_list<ReplayRefusal> refusals) {
+Json codes_of(std::initializer_list<ReplayRefusal> refusals) {
     Json list = Json::array();
     for (const ReplayRefusal refusal : refusals) list.push_back(name_of(refusal));
     return list;
@@ -52,7 +45,7 @@ const Description<HourFigures>& figures_contract() {
         d.field("IAE", &F::IAE, only_answered(number()), "Integral of |r - y|, noise included.", {.unit = "y time"})
             .field("largest_error", &F::largest_error, only_answered(number()), "Largest |r - y|.", {.unit = "y"})
             .field("travel", &F::travel, only_answered(number()), "Sum of the moves of u.", {.unit = "u"})
-            .field("reversals", &F::reversals, count(),
+            .field("reversals", &F::reversals, only_answered(integer(0, 1 << 30)),
                    "Changes of direction of u; moves back within its grid, or within 0.2 % of its range, are none.");
         return d;
     }();
@@ -93,7 +86,7 @@ const Description<ReplayedRecord>& replayed_record_contract() {
         Description<R> d("ReplayedRecord",
                          "The recorded time as it was: what the replays of the entries are compared with. Traces have "
                          "as many points as `evaluate.points` says.");
-        add_refusal(d, names({manual, no_set_point, doubtful_model, unknown_region, no_error}),
+        add_refusal(d, codes_of({manual, feedback, no_set_point, doubtful_model, unknown_region, no_error}),
                     "Why no entry is replayed, and what to do.");
         add_number(d, "from", &R::from, "Time of the first row.", {.unit = "time"});
         add_number(d, "to", &R::to, "Time of the last row.", {.unit = "time"});
@@ -113,7 +106,7 @@ const Description<ReplayedEntry>& replayed_entry_contract() {
         Description<E> d("ReplayedEntry",
                          "The recorded time with this controller: the same set points and disturbances, on the model, "
                          "within the limits of u.");
-        add_refusal(d, names({no_law, unstable, wide_band}), "Why it is not known; the figures are then left out.");
+        add_refusal(d, codes_of({no_law, unstable, wide_band}), "Why it is not known; the figures are then left out.");
         add_figures(d);
         add_number(d, "IAE_ratio", &E::IAE_ratio, "IAE over that of the record.");
         add_number(d, "IAE_ratio_low", &E::IAE_ratio_low,

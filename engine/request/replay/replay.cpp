@@ -66,6 +66,7 @@ RecordReplayer::RecordReplayer(const TuningRequest& request, const IdentifiedMod
 
 std::optional<ReplayRefusal> RecordReplayer::refusal() const {
     if (!model_.data_quality.closed_loop) return ReplayRefusal::manual;
+    if (model_.data_quality.closed_loop->used == LoopExcitation::none) return ReplayRefusal::feedback;
     if (request_.record->r.empty()) return ReplayRefusal::no_set_point;
     if (reason_of_doubt(model_) && std::ranges::any_of(model_.warnings, [](const Warning& warning) {
             return warning.level == WarningLevel::bad;

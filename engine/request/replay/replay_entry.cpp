@@ -5,6 +5,7 @@ namespace tunewright {
 const char* name_of(ReplayRefusal refusal) {
     switch (refusal) {
         case ReplayRefusal::manual: return "manual";
+        case ReplayRefusal::feedback: return "feedback";
         case ReplayRefusal::no_set_point: return "no-set-point";
         case ReplayRefusal::doubtful_model: return "doubtful-model";
         case ReplayRefusal::unknown_region: return "unknown-region";
@@ -21,6 +22,9 @@ const char* reason_of(ReplayRefusal refusal) {
         case ReplayRefusal::manual:
             return "The record shows no controller in automatic, so there is no error of a loop to compare with. Send a "
                    "record of normal operation in automatic.";
+        case ReplayRefusal::feedback:
+            return "Only the feedback moved u, so the model may describe the controller and not the plant. Send a record "
+                   "in which the set point moves.";
         case ReplayRefusal::no_set_point:
             return "The set point is not recorded, so the error is not known. Send its column too.";
         case ReplayRefusal::doubtful_model:

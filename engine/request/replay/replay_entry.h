@@ -11,6 +11,7 @@ namespace tunewright {
 enum class ReplayRefusal {
     // of the record
     manual,          ///< no controller moved u: the error is not a loop's
+    feedback,        ///< nothing but the feedback moved u: the model may be its controller's
     no_set_point,    ///< the set point is not recorded: the error is not known
     doubtful_model,  ///< a warning of level bad says that it may be another plant
     unknown_region,  ///< the model has no standard errors: nor has the claim

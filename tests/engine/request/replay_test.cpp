@@ -37,7 +37,7 @@ IdentifiedModel model_of(const Fopdt& plant, double error) {
     model.covariance.names = {"K", "T", "L"};
     const double K = error * plant.K, T = error * plant.T, L = error * plant.L;
     model.covariance.matrix = {{K * K, 0, 0}, {0, T * T, 0}, {0, 0, L * L}};
-    model.data_quality.closed_loop = ClosedLoop{};
+    model.data_quality.closed_loop = ClosedLoop{.evidence = {}, .used = LoopExcitation::set_point};
     model.data_quality.u0 = 35;
     return model;
 }
@@ -121,6 +121,10 @@ TEST_F(Replayed, RefusesWhatSaysNothingOfTheSettings) {
     IdentifiedModel manual = good;
     manual.data_quality.closed_loop.reset();
     EXPECT_EQ(refused(manual), ReplayRefusal::manual);
+
+    IdentifiedModel unexcited = good;
+    unexcited.data_quality.closed_loop->used = LoopExcitation::none;
+    EXPECT_EQ(refused(unexcited), ReplayRefusal::feedback);
 
     IdentifiedModel bad = good;
     bad.warnings.push_back({"contradictory-levels", "", WarningLevel::bad});

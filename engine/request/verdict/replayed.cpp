@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "engine/request/verdict/findings.h"
 
 namespace tunewright::verdict {
@@ -7,18 +5,19 @@ namespace tunewright::verdict {
 OptionalFinding replayed(const VerdictInput& c) {
     const auto& replay = c.entry.replay;
     if (!replay || replay->refused || c.is_today()) return {};
-    const double above = 100 * (replay->IAE_ratio - 1);
-    const bool apart = replay->IAE_ratio_low > 1 || replay->IAE_ratio_high < 1;
-    FindingBuilder draft("replay", !apart ? Level::note : above < 0 ? Level::good : Level::warning);
+    const Level level = replay->IAE_ratio_high < 1  ? Level::good
+                        : replay->IAE_ratio_low > 1 ? Level::warning
+                                                    : Level::note;
+    FindingBuilder draft("replay", level);
     draft.say("Over the recorded time these settings would have given ")
-        .number("IAE_percent", 100 * replay->IAE_ratio, "%")
-        .say(" of the integrated absolute error (")
-        .number("IAE_percent_low", 100 * replay->IAE_ratio_low)
-        .say(" to ")
-        .number("IAE_percent_high", 100 * replay->IAE_ratio_high)
-        .say(" %)");
+        .number("IAE_ratio", replay->IAE_ratio)
+        .say(" times the integrated absolute error (between ")
+        .number("IAE_ratio_low", replay->IAE_ratio_low)
+        .say(" and ")
+        .number("IAE_ratio_high", replay->IAE_ratio_high)
+        .say(")");
     if (replay->travel_ratio)
-        draft.say(" with ").number("travel_percent", 100 * *replay->travel_ratio, "%").say(" of the output's travel");
+        draft.say(" and ").number("travel_ratio", *replay->travel_ratio).say(" times the travel of the controller output");
     return draft.say(".");
 }
 

@@ -14,12 +14,13 @@ namespace {
 
 using Index = std::size_t;
 
-/// Found on simulated hours (docs/correctness.md): plants of one and two lags, three lags, inverse responses and levels
-/// with unmeasured loads, ramps, coloured noise and oscillations.
+/// Found on simulated hours of plants of one to three lags, inverse responses and levels, with unmeasured loads, ramps,
+/// coloured noise and oscillations, and models wrong by their standard errors or of too simple a structure.
 struct ReplaySettings {
-    /// Half width of the band, relative: beyond it the ratio is no longer within 15 % on nine of ten hours.
+    /// Half width of the band, relative: all 390 of 400 hours that keep it were within 15 %, of the others 3 of 10.
     double max_half_width = 0.25;
-    /// Added to the band on either side, relative: rounding of y, rows beside the controller's own instants.
+    /// Added to the band on either side, relative: rounding of y, a controller that computes between or beyond the rows.
+    /// Without it the bands held the truth on 90 % of 400 hours, with it on 98 %.
     double own_error = 0.03;
     /// Mean of |r - y| over the mean of |noise|: below it the noise is most of the error.
     double min_error_ratio = 1.5;
@@ -55,11 +56,12 @@ RecordReplayer::RecordReplayer(const TuningRequest& request, const IdentifiedMod
     take_limits();
     record_.figures = figures_of({rows_.u, rows_.y});
     const double mean_error = record_.figures.IAE / (rows_.h * static_cast<double>(rows_.size()));
-    if (mean_error < kSettings.min_error_ratio * kMeanOfNormal * model.data_quality.noise_std) {
+    if (!(mean_error > kSettings.min_error_ratio * kMeanOfNormal * model.data_quality.noise_std)) {
         record_.refused = ReplayRefusal::no_error;
         return;
     }
     take_plants();
+    if (record_.refused) return;
     choose_shown_rows();
     record_.trace = trace_of(rows_.y, rows_.u);
 }
@@ -86,6 +88,9 @@ void RecordReplayer::take_limits() {
         limits_.output = ActuatorLimits{(*known)[0], (*known)[1]};
     else if (given)
         limits_.output = ActuatorLimits{u0 + given->min, u0 + given->max};
+    else if (request_.device && request_.device->program.output)
+        limits_.output = ActuatorLimits{u0 + request_.device->program.output->min,
+                                        u0 + request_.device->program.output->max};
     if (limits_.output) {
         limits_.output->min = std::min(limits_.output->min, low);
         limits_.output->max = std::max(limits_.output->max, high);
@@ -126,6 +131,15 @@ std::optional<SampledPid> RecordReplayer::law_of(const TuningEntry& entry) const
     return SampledPid{.gains = gains(controller), .Ts = rows_.h / kSettings.substeps};
 }
 
+ProgramLimits RecordReplayer::limits_of(const TuningEntry& entry) const {
+    ProgramLimits limits = limits_;
+    if (!entry.on_device || !request_.device) return limits;
+    limits.u_resolution = request_.device->program.u_resolution;
+    limits.y_resolution = request_.device->program.y_resolution;
+    limits.dead_band = request_.device->program.dead_band;
+    return limits;
+}
+
 // u on the grid of the recorded one, whose rounding adds to its travel.
 HourFigures RecordReplayer::figures_of(const ReplayedRows& run) const {
     return hour_figures(rows_.h, rows_.r, run.y, rounded(run.u, u_grid_), band_);
@@ -150,9 +164,10 @@ std::optional<ReplayedEntry> RecordReplayer::of(const TuningEntry& entry) const 
     };
     const auto law = law_of(entry);
     if (!law) return refuse(ReplayRefusal::no_law);
+    const ProgramLimits limits = limits_of(entry);
     made.IAE_ratio_low = std::numeric_limits<double>::infinity();
     for (Index i = 0; i < plants_.size(); ++i) {
-        const ReplayedRows run = replay(plants_[i], *law, limits_, rows_);
+        const ReplayedRows run = replay(plants_[i], *law, limits, rows_);
         if (run.escaped) return refuse(ReplayRefusal::unstable);
         const HourFigures figures = figures_of(run);
         const double ratio = figures.IAE / record_.figures.IAE;

@@ -38,6 +38,7 @@ private:
     void take_plants();
     void choose_shown_rows();
     std::optional<SampledPid> law_of(const TuningEntry& entry) const;
+    ProgramLimits limits_of(const TuningEntry& entry) const;
     HourFigures figures_of(const ReplayedRows& run) const;
     HourTrace trace_of(const std::vector<double>& y, const std::vector<double>& u) const;
 

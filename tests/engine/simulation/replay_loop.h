@@ -54,7 +54,7 @@ inline OwnHour eventful_hour(int rows, double h) {
     for (int k = 0; k < rows; ++k) {
         hour.r.push_back(20 + (k > rows / 10 ? 5 : 0) - (k > rows / 2 ? 8 : 0));
         hour.load.push_back(k > rows / 3 ? 1.5 : 0);
-        hour.output.push_back(k == 0 ? 0 : 2.0 * k / rows + 0.3 * std::sin(0.17 * k));
+        hour.output.push_back(k == 0 ? 0 : 2.0 * k / rows + 0.05 * std::sin(0.17 * k));
     }
     return hour;
 }

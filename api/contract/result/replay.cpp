@@ -25,9 +25,10 @@ void add_refusal(Description<Replay>& d, const Json& codes, const char* sentence
             out.end_object();
         },
         [codes](SchemaBook&) {
-            return Json{{"type", "object"},
-                        {"properties", {{"code", {{"type", "string"}, {"enum", codes}}}, {"text", {{"type", "string"}}}}},
-                        {"required", {"code", "text"}}};
+            return Json{
+                {"type", "object"},
+                {"properties", {{"code", {{"type", "string"}, {"enum", codes}}}, {"text", {{"type", "string"}}}}},
+                {"required", {"code", "text"}}};
         },
         sentence, {}, [](const Replay& replay) { return !replay.refused; });
 }
@@ -65,8 +66,8 @@ template <class Replay>
 void add_number(Description<Replay>& d, const char* name, double Replay::*member, const char* sentence,
                 FieldOptions options = {}) {
     d.field(
-        name, {}, [member](const Replay& replay, Writer& out) { out.number(replay.*member); }, number().schema, sentence,
-        options, [](const Replay& replay) { return replay.refused.has_value(); });
+        name, {}, [member](const Replay& replay, Writer& out) { out.number(replay.*member); }, number().schema,
+        sentence, options, [](const Replay& replay) { return replay.refused.has_value(); });
 }
 
 template <class Replay>
@@ -112,7 +113,8 @@ const Description<ReplayedEntry>& replayed_entry_contract() {
         add_number(d, "IAE_ratio_low", &E::IAE_ratio_low,
                    "The least of it over the plants that the record leaves possible.");
         add_number(d, "IAE_ratio_high", &E::IAE_ratio_high, "The largest of it over them.");
-        d.field("travel_ratio", &E::travel_ratio, maybe(only_answered(number())), "Travel of u over that of the record.");
+        d.field("travel_ratio", &E::travel_ratio, maybe(only_answered(number())),
+                "Travel of u over that of the record.");
         add_trace(d, &HourTrace::y, "y", "y", "Measurement at `replay.t` of the answer.");
         add_trace(d, &HourTrace::u, "u", "u", "Controller output at the same times.");
         return d;

@@ -53,7 +53,7 @@ struct TuningEntry {
     std::optional<OptimumAtMs> optimum_at_Ms;  ///< where asked for
     std::optional<double> best_PI_load_IAE;    ///< beside a robust PID: of the robust PI within the same limits
     std::optional<DeviceEntry> on_device;      ///< where asked for and possible
-    std::optional<ReplayedEntry> replay;       ///< of a record that is replayed: its hour with this controller
+    std::optional<ReplayedEntry> replay;       ///< the recorded time with this controller
     std::optional<Standing> standing;          ///< of what was tuned, and of the baseline
     /// The longest sample time of a program with backward rules that keeps Ms within 5 %; of designs.
     std::optional<Figure> longest_sample_time;

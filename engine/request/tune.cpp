@@ -211,7 +211,7 @@ void TuningRun::compare_with_optima(double from) {
     }
 }
 
-// What the recorded hour would have looked like with each entry.
+// The recorded time with the controller of each entry.
 void TuningRun::replay_record() {
     if (!request_.record || result_.partial) return;
     const RecordReplayer replayer(request_, *result_.model);

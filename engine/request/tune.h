@@ -55,7 +55,7 @@ struct TuningRequest {
 
 struct TuningResult {
     std::optional<IdentifiedModel> model;
-    std::optional<ReplayedRecord> replay;           ///< of a record: its hour as it was
+    std::optional<ReplayedRecord> replay;           ///< a record as it was
     std::optional<OperatingPoint> operating_point;  ///< of a nonlinear plant
     std::vector<TuningEntry> controllers;
     std::vector<int> ranking;  ///< indices into controllers, best first; entries with an error are left out

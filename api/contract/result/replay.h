@@ -6,9 +6,9 @@
 
 namespace tunewright::api {
 
-/// The recorded hour, or why it is not replayed.
+/// The record as it was, or the reason why it is not replayed.
 const Description<ReplayedRecord>& replayed_record_contract();
-/// The hour with the controller of an entry, or why that is not known.
+/// The recorded time with the controller of an entry, or the reason why that is unknown.
 const Description<ReplayedEntry>& replayed_entry_contract();
 
 }  // namespace tunewright::api

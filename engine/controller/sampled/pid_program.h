@@ -26,7 +26,7 @@ public:
     explicit PidProgram(const SampledPid& law, const ProgramLimits& limits = {});
 
     /// Bumpless transfer to automatic: all states as after a long rest at this set point, measurement and output, with
-    /// an integral that makes u the output of this instant. Then output limits and rounding are of u itself.
+    /// an integral that gives the output u now. From then on output limits and rounding apply to u itself.
     void take_over(double r, double y, double u);
 
     /// The output u_k for what is read at t_k.

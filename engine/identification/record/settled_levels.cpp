@@ -30,9 +30,8 @@ std::optional<Warning> contradiction(const CleanRecord& r, const std::vector<Set
                              "At u = " + u_text(r, a.u) + " y settles at " + y_text(r, a.y) +
                                  " (until t = " + t_text(r, a.until) + "), and at u = " + u_text(r, b.u) + " at " +
                                  y_text(r, b.y) + " (until t = " + t_text(r, b.until) +
-                                 "): u alone does not decide where y goes, so no gain K is right for the record. Look "
-                                 "whether column u is what reaches the plant, and add what else moves y as a measured "
-                                 "disturbance.",
+                                 "): u alone does not decide where y goes. Look whether column u is what reaches the "
+                                 "plant, and add what else moves y as a measured disturbance.",
                              WarningLevel::bad};
         }
     }

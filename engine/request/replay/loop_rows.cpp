@@ -45,7 +45,7 @@ Expected<LoopRows> loop_rows(const Record& record) {
     const int rows = static_cast<int>(std::min<double>(kMaxReplayRows, std::floor(duration / usual + 1.5)));
     const double step = rows < kMaxReplayRows ? usual : duration / (kMaxReplayRows - 1);
     LoopRows made{.t0 = scale.t_origin, .h = step * scale.t_scale, .u = {}, .y = {}, .r = {}};
-    constexpr double kSlack = 1e-6;  // of a row: times as near as that are its own
+    constexpr double kSlack = 1e-6;  // of a row: nearer times are equal
     LastBefore sample, move, wanted;
     for (int k = 0; k < rows; ++k) {
         const double t = std::min(k * step, duration), now = t + kSlack * step;
@@ -58,7 +58,8 @@ Expected<LoopRows> loop_rows(const Record& record) {
         const bool moved = !clean->v_time.empty() && clean->v_time[j] <= now;
         made.u.push_back(scale.u_rest + (moved ? scale.u_scale * clean->v_level[j] : 0));
         const double at = scale.t_origin + scale.t_scale * now;
-        made.r.push_back(set_point[wanted.at(at, set_point.size(), [&](Index n) { return set_point[n].first; })].second);
+        made.r.push_back(
+            set_point[wanted.at(at, set_point.size(), [&](Index n) { return set_point[n].first; })].second);
     }
     return made;
 }

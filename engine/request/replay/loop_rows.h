@@ -1,4 +1,4 @@
-// A loop's record on rows of equal spacing, as a replay takes it.
+// The record of a loop on rows of equal spacing, for a replay.
 #pragma once
 
 #include "engine/expected.h"
@@ -9,8 +9,8 @@ namespace tunewright {
 
 inline constexpr int kMaxReplayRows = 20'000;
 
-/// The rows in order, false readings left out (record/clean_record.h), at the record's usual spacing or, where these
-/// were more than kMaxReplayRows, at so many: y on straight lines between its samples, u and r held. Errors: those of
+/// The rows in order, without false readings (record/clean_record.h), at the usual spacing of the record, or
+/// kMaxReplayRows rows if it has more: y on straight lines between its samples, u and r held. Errors: those of
 /// clean_record(); invalid_argument for a record without a set point.
 Expected<LoopRows> loop_rows(const Record& record);
 

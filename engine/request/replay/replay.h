@@ -1,12 +1,12 @@
-// "What would this hour have looked like?": the recorded hour of a loop with other settings, and the error of that claim.
+// The recorded time of a loop with other settings, and the error of that statement.
 //
-// 1. The record is refused where a replay of it would say nothing of the settings (ReplayRefusal).
-// 2. Its rows are put on an even grid, u cut to the actuator's limits (loop_rows.h).
-// 3. The controller, as it is implemented where that is known, runs over the hour on the model
-//    (simulation/replay/loop_replay.h); its figures stand next to those of the recorded u and y.
+// 1. A record whose replay would be meaningless is refused (ReplayRefusal).
+// 2. The rows are put on an even grid (loop_rows.h).
+// 3. The controller, as implemented if that is known, runs over the recorded time on the model
+//    (simulation/replay/loop_replay.h). Its figures are compared with those of the recorded u and y.
 // 4. The same on every plant at the ends of the record's 95 % region and on its other structures: the least and the
-//    largest ratio of the IAE are the band of the claim.
-// 5. An entry is refused where that band is too wide, or a plant of the region escapes.
+//    largest ratio of the IAE are the band.
+// 5. An entry is refused if its band is too wide or its loop is unstable on one of these plants.
 #pragma once
 
 #include <cstddef>
@@ -24,12 +24,12 @@ namespace tunewright {
 
 class RecordReplayer {
 public:
-    /// What it is made from must outlive it.
+    /// Request and model must outlive it.
     RecordReplayer(const TuningRequest& request, const IdentifiedModel& model);
 
-    /// The hour as it was; `refused` where no entry is replayed.
+    /// The recorded time as it was; `refused` if no entry is replayed.
     const ReplayedRecord& record() const { return record_; }
-    /// Empty without a controller, and where the record is refused.
+    /// Empty if the entry has no controller or the record is refused.
     std::optional<ReplayedEntry> of(const TuningEntry& entry) const;
 
 private:
@@ -39,8 +39,8 @@ private:
     void choose_shown_rows();
     std::optional<SampledPid> law_of(const TuningEntry& entry) const;
     ProgramLimits limits_of(const TuningEntry& entry) const;
-    HourFigures figures_of(const ReplayedRows& run) const;
-    HourTrace trace_of(const std::vector<double>& y, const std::vector<double>& u) const;
+    ReplayFigures figures_of(const ReplayedRows& run) const;
+    ReplayTrace trace_of(const std::vector<double>& y, const std::vector<double>& u) const;
 
     const TuningRequest& request_;
     const IdentifiedModel& model_;

@@ -20,27 +20,29 @@ const char* name_of(ReplayRefusal refusal) {
 const char* reason_of(ReplayRefusal refusal) {
     switch (refusal) {
         case ReplayRefusal::manual:
-            return "The record shows no controller in automatic, so there is no error of a loop to compare with. Send a "
+            return "The record shows no controller in automatic, so it has no control error to compare with. Send a "
                    "record of normal operation in automatic.";
         case ReplayRefusal::feedback:
-            return "Only the feedback moved u, so the model may describe the controller and not the plant. Send a record "
+            return "Only the feedback moved u, so the model may describe the controller and not the plant. Send a "
+                   "record "
                    "in which the set point moves.";
         case ReplayRefusal::no_set_point:
-            return "The set point is not recorded, so the error is not known. Send its column too.";
+            return "The record has no set point, so its control error is unknown. Send column r as well.";
         case ReplayRefusal::doubtful_model:
-            return "The warnings about the model say that it may be another plant. A record with two or three moves of "
-                   "the set point gives a better one.";
+            return "A warning about the model says that it may not describe this plant. Send a record with two or "
+                   "three "
+                   "moves of the set point.";
         case ReplayRefusal::unknown_region:
-            return "The model has no standard errors, so the error of a replay is not known.";
+            return "The model has no standard errors, so the error of a replay is unknown.";
         case ReplayRefusal::no_error:
             return "The recorded error is hardly more than the noise of y, which no settings change. Send a record in "
-                   "which something moves the loop.";
-        case ReplayRefusal::no_law: return "The nonlinear integral of this controller is not replayed.";
-        case ReplayRefusal::unstable:
-            return "The loop is unstable on the model or on a plant that the record leaves possible.";
+                   "which the set point or a disturbance moves y.";
+        case ReplayRefusal::no_law: return "The nonlinear integral of this controller is not supported here.";
+        case ReplayRefusal::unstable: return "The loop is unstable on the model or on a plant that fits the record.";
         case ReplayRefusal::wide_band:
-            return "The record leaves the plant too uncertain to say what these settings would have done. A record with "
-                   "more or larger moves of the set point narrows that.";
+            return "The plants that fit the record differ too much to say what these settings would have done. A "
+                   "record "
+                   "with more or larger moves of the set point narrows that.";
     }
     return "";
 }

@@ -88,7 +88,7 @@ std::optional<Level> overshoot_level(
 OptionalFinding movement(const VerdictInput& c);  ///< of u, against today's
 
 // replayed.cpp
-OptionalFinding replayed(const VerdictInput& c);  ///< the recorded hour with this controller, against what it was
+OptionalFinding replayed(const VerdictInput& c);  ///< the recorded time with this controller
 
 // actuator.cpp
 /// Steps for which u has to be beyond its limits at rest, whatever the controller.

@@ -11,13 +11,15 @@ OptionalFinding replayed(const VerdictInput& c) {
     FindingBuilder draft("replay", level);
     draft.say("Over the recorded time these settings would have given ")
         .number("IAE_ratio", replay->IAE_ratio)
-        .say(" times the integrated absolute error (between ")
+        .say(" times the integrated absolute error of the record (between ")
         .number("IAE_ratio_low", replay->IAE_ratio_low)
         .say(" and ")
         .number("IAE_ratio_high", replay->IAE_ratio_high)
         .say(")");
     if (replay->travel_ratio)
-        draft.say(" and ").number("travel_ratio", *replay->travel_ratio).say(" times the travel of the controller output");
+        draft.say(" and ")
+            .number("travel_ratio", *replay->travel_ratio)
+            .say(" times the travel of the controller output");
     return draft.say(".");
 }
 

@@ -28,7 +28,7 @@ public:
         state_.x.assign(static_cast<Index>(plant.realisation().n), 0.0);
     }
 
-    /// What it adds to y of row k, before anything changes there.
+    /// The difference of y at row k, before the input changes there.
     double output(long k) const { return reader_.at(state_.x, arriving(k - 1)).y; }
     void give(double difference) { given_.push_back(difference); }
     /// From row k to row k + 1.
@@ -52,7 +52,7 @@ private:
     std::vector<double> given_;
 };
 
-/// The program between two rows: when it computes, and what it reads then.
+/// Runs the program between two rows: when it computes, and the y that it reads.
 class ProgramClock {
 public:
     ProgramClock(SampledPid law, const ProgramLimits& limits, double h)

@@ -1,12 +1,13 @@
-// A recorded hour of a loop, run once more with other settings.
+// A recorded run of a loop, repeated with other settings.
 //
-// The plant is linear, y = P u + d, and d (disturbances at any place, noise, the state at the first row) is whatever the
-// recorded u does not explain. The same d with another u gives
+// The plant is linear, y = P u + d, where d (disturbances at any place, noise, the state at the first row) is the part
+// of y that the recorded u does not explain. The same d with another u gives
 //
 //     y_new = y + P (u_new - u),    u_new = C(r, y_new),
 //
-// in which d and the plant's state at the start need not be known: both drop out of the difference. With the settings of
-// the record the replay is the record itself, whatever the model; the nearer the settings, the less the model counts.
+// so neither d nor the state of the plant at the start has to be known: both cancel. With the settings of the record
+// the replay is the record itself for any model, and the error of the model counts more the further the settings are
+// away.
 #pragma once
 
 #include <vector>
@@ -25,16 +26,18 @@ struct LoopRows {
     std::size_t size() const { return y.size(); }
 };
 
-/// y and u at the rows of the record. `escaped`: y left kMaxEscape of the record's range; rows from there on are missing.
+/// y and u at the rows of the record. `escaped`: y moved away from the recorded one by 1000 times the range of the
+/// record; the rows from there on are missing.
 struct ReplayedRows {
     std::vector<double> u, y;
     bool escaped = false;
 };
 
-/// The controller takes over from the record's u at the first row without a bump, and computes every law.Ts; where that
-/// is less than h several times a row, with y on straight lines between rows, and where it is more at the first row at
-/// or after its time. The plant takes u_new as it takes the recorded u: held from row to row, the dead time exact.
-/// `limits.output` are values of u itself, no deviations.
-ReplayedRows replay(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits, const LoopRows& record);
+/// The controller takes over from the record's u at the first row without a bump and computes every law.Ts: if that is
+/// less than h, several times per row, with y on straight lines between rows; if it is more, at the first row at or
+/// after each multiple. The plant receives u_new as the recorded u: held from row to row, with the exact dead time.
+/// `limits.output` are values of u itself, not deviations.
+ReplayedRows replay(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits,
+                    const LoopRows& record);
 
 }  // namespace tunewright

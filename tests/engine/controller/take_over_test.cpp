@@ -14,7 +14,11 @@ TEST(PidProgram, TakesOverWithoutABump) {
         for (const auto filter : {FilterType::none, FilterType::derivative, FilterType::measurement_first_order,
                                   FilterType::measurement_second_order})
             for (const bool velocity : {false, true}) {
-                const SampledPid law{.gains = {.Kp = 1.5, .Ki = 0.2, .Kd = 4, .b = 0.6, .c = 0.3,
+                const SampledPid law{.gains = {.Kp = 1.5,
+                                               .Ki = 0.2,
+                                               .Kd = 4,
+                                               .b = 0.6,
+                                               .c = 0.3,
                                                .filter = {filter, filter == FilterType::none ? 0 : 3.0},
                                                .setpoint_lag = 2},
                                      .Ts = 0.5,

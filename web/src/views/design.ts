@@ -21,6 +21,7 @@ import type { UnitNames } from "../words/numbers.ts";
 import { cureButtons } from "./cures.ts";
 import { operatingCard } from "./cards/operating_card.ts";
 import { progressCard } from "./cards/progress_card.ts";
+import { replayCard } from "./cards/replay_card.ts";
 import { reportCards } from "./cards/report_cards.ts";
 import { settingsCard } from "./cards/settings_card.ts";
 import { titleCard } from "./cards/title_card.ts";
@@ -83,6 +84,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const reportsAt = (place: "above" | "below") => reports.filter((card) => card.place === place).map((card) => card.element);
   const legend = createLegend(store);
   const plots = plotGrid(announce);
+  const replay = replayCard(plots);
   const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
   let finished: { job: Job; result: Result } | null = null;
   let screen: OnScreen | null = null;
@@ -109,7 +111,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     h("div", { class: "more-cards" }, own.side, ...reportsAt("below"), ...own.below, computed),
   );
   const followsLater = h("p", { class: "hint", hidden: true }, "The figures below follow when you release the slider.");
-  const below = h("div", { class: "below" }, followsLater, model, ...reportsAt("above"), notes, more);
+  const below = h("div", { class: "below" }, followsLater, replay.element, model, ...reportsAt("above"), notes, more);
   const headRight = h("div", { class: "head-right" }, trouble, verdict, cures.element, progress.element, range.element);
   const element = h("main", { class: "design", id: "main" }, title.element, headRight);
   const bodyParts = [modified.controls, main, modified.front, aside, below];
@@ -171,6 +173,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     showFigures(result, listed, drawn, names, units, held);
     linearNote.hidden = !hasLinear(drawn);
     showEntryPlots(plots, drawn, job.request, index);
+    replay.show(result, drawn, units);
     return drawn;
   }
 

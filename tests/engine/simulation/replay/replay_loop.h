@@ -42,8 +42,8 @@ inline LoopRows own_loop(const Fopdt& plant, const OwnPi& pi, const OwnHour& hou
         }
         rows.y.push_back(y);
         rows.u.push_back(u);
-        x = a * x + plant.K * ((late - a) * given(k - whole - 1) + (1 - late) * given(k - whole) +
-                               (1 - a) * hour.load[row]);
+        x = a * x +
+            plant.K * ((late - a) * given(k - whole - 1) + (1 - late) * given(k - whole) + (1 - a) * hour.load[row]);
     }
     return rows;
 }

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/engine/simulation/replay_loop.h"
+#include "tests/engine/simulation/replay/replay_loop.h"
 
 namespace tunewright {
 namespace {

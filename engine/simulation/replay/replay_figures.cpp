@@ -1,4 +1,4 @@
-#include "engine/simulation/replay/hour_figures.h"
+#include "engine/simulation/replay/replay_figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,9 +29,9 @@ int reversals_of(std::span<const double> u, double band) {
 
 }  // namespace
 
-HourFigures hour_figures(double h, std::span<const double> r, std::span<const double> y, std::span<const double> u,
-                         double band) {
-    HourFigures figures;
+ReplayFigures replay_figures(double h, std::span<const double> r, std::span<const double> y, std::span<const double> u,
+                             double band) {
+    ReplayFigures figures;
     for (std::size_t k = 0; k < y.size(); ++k) {
         const double error = std::abs(r[k] - y[k]);
         figures.IAE += error * h;

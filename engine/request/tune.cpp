@@ -11,6 +11,7 @@
 #include "engine/request/identified_region.h"
 #include "engine/request/plan.h"
 #include "engine/request/ranking.h"
+#include "engine/request/replay/replay.h"
 #include "engine/request/rows.h"
 #include "engine/request/ultimate_alone.h"
 #include "engine/request/verdict/verdict.h"
@@ -41,6 +42,7 @@ private:
     bool tune_rows(const std::vector<PlannedRow>& planned, double from, double to);
     bool wants_optima() const;
     void compare_with_optima(double from);
+    void replay_record();
     void keep_best(const TuningEntry& entry);
     RunControl share(double from, double to) const;
     void report(double fraction, const std::string& stage, const std::string& message) const;
@@ -210,6 +212,18 @@ void TuningRun::compare_with_optima(double from) {
     }
 }
 
+// Replays the recorded time with the controller of each entry.
+void TuningRun::replay_record() {
+    if (!request_.record || result_.partial) return;
+    const RecordReplayer replayer(request_, *result_.model);
+    auto& entries = result_.controllers;
+    parallel_for(control_.spread, static_cast<int>(entries.size()), [&](int index) {
+        TuningEntry& entry = entries[static_cast<std::size_t>(index)];
+        if (!stopped()) entry.replay = replayer.of(entry);
+    });
+    result_.replay = replayer.record();
+}
+
 // Optima are needed if several designs are ranked, because they are ranked by their distance from them.
 bool TuningRun::wants_optima() const {
     const bool several = request_.tune.size() > 1 || request_.tune.front().of_all();
@@ -240,6 +254,7 @@ Expected<TuningResult> TuningRun::result() {
             result_.controllers.push_back(rows_->baseline(control_));
     }
     if (wants_optima() && !result_.partial) compare_with_optima(tuned);
+    replay_record();
     draw_together(result_.controllers);
     result_.ranking = ranked(result_.controllers, terms());
     if (result_.model && !result_.ranking.empty())

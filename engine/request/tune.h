@@ -59,6 +59,7 @@ struct TuningRequest {
 
 struct TuningResult {
     std::optional<IdentifiedModel> model;
+    std::optional<ReplayedRecord> replay;           ///< the record as it was
     std::optional<OperatingPoint> operating_point;  ///< only for a nonlinear plant
     std::vector<TuningEntry> controllers;
     std::vector<int> ranking;  ///< indices into controllers, best first; entries with an error are left out

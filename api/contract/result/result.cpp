@@ -9,6 +9,7 @@
 #include "api/contract/reports/reports.h"
 #include "api/contract/result/evaluation.h"
 #include "api/contract/result/identified_model.h"
+#include "api/contract/result/replay.h"
 
 namespace tunewright::api {
 
@@ -160,6 +161,11 @@ void add_operating_point(Description<Answer>& d, Callable<const OperatingPoint*(
             "For a nonlinear plant: the linearisation there, which methods and robustness use.", {}, none);
 }
 
+constexpr const char* kReplay =
+    "The record of a loop in automatic as it was; the `replay` of each entry has the same time with its controller.";
+constexpr const char* kEntryReplay =
+    "The recorded time with this controller; left out if `replay` of the answer is refused.";
+
 constexpr const char* kWhichToTake =
     "Findings on all entries: the proposed one, and the comparison with today's settings; the most important first.";
 
@@ -277,6 +283,7 @@ const Description<TuningEntry>& entry_contract() {
         add_reports(d, false);
         d.field("optimum_at_Ms", &TuningEntry::optimum_at_Ms, maybe(answer(optimum_contract())),
                 "Comparison with the least load IAE that a PID reaches at the same Ms, if requested.")
+            .field("replay", &TuningEntry::replay, maybe(answer(replayed_entry_contract())), kEntryReplay)
             .field("standing", &TuningEntry::standing, maybe(answer(standing_contract())), "Data for the ranking.");
         add_reports(d, true);
         evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Computing time of this entry, ms.");
@@ -344,7 +351,12 @@ const Description<ResultAnswer>& result_contract() {
             .field(
                 "model", {}, [](const ResultAnswer& a, Writer& out) { model_contract().write(*a.result.model, out); },
                 [](SchemaBook& book) { return model_contract().schema(book); }, "The model identified from the record.",
-                none, [](const ResultAnswer& a) { return !a.result.model; });
+                none, [](const ResultAnswer& a) { return !a.result.model; })
+            .field(
+                "replay", {},
+                [](const ResultAnswer& a, Writer& out) { replayed_record_contract().write(*a.result.replay, out); },
+                [](SchemaBook& book) { return replayed_record_contract().schema(book); }, kReplay, none,
+                [](const ResultAnswer& a) { return !a.result.replay; });
         add_operating_point<ResultAnswer>(d, [](const ResultAnswer& a) { return pointer(a.result.operating_point); });
         d.field(
              "controllers", {},
@@ -378,7 +390,8 @@ const Description<TuningResult>& design_answer_contract() {
         using R = TuningResult;
         Description<R> d("DesignAnswer", "The result of a job, without name and date.");
         d.field("model", &R::model, maybe(answer(model_contract())),
-                "Model of a record; left out if the request contains it.");
+                "Model of a record; left out if the request contains it.")
+            .field("replay", &R::replay, maybe(answer(replayed_record_contract())), kReplay);
         add_operating_point<R>(d, [](const R& a) { return pointer(a.operating_point); });
         d.field("controllers", &R::controllers, list_of(answer(entry_contract())),
                 "One entry per method, in the order of the request; the baseline last.")

@@ -21,6 +21,18 @@ double rounded(double value, double resolution) {
 PidProgram::PidProgram(const SampledPid& law, const ProgramLimits& limits)
     : law_(law), limits_(limits), past_(samples_kept(law), 0.0) {}
 
+void PidProgram::take_over(double r, double y, double u) {
+    r_f_ = r;
+    y_f_ = y_before_ = y;
+    v_ = D_ = 0;
+    set_before_ = law_.gains.c * r;
+    std::fill(past_.begin(), past_.end(), law_.gains.c * r - y);
+    P_ = law_.gains.Kp * (law_.gains.b * r - y);
+    I_ = u - P_;
+    e_ = r - y;
+    u_ = u;
+}
+
 // Computes y_f and v = dy_f/dt: v = (y - y_f)/Tf for the first order, v' = (2/Tf^2)(y - y_f) - (2/Tf) v for the second.
 double PidProgram::filtered_trapezoidal(double y) {
     const double Tf = law_.gains.filter.Tf, r = 0.5 * law_.Ts / Tf, mean = 0.5 * (y + y_before_), before = y_f_;

@@ -19,10 +19,14 @@ struct ProgramLimits {
     bool linear() const { return !output && u_resolution == 0 && y_resolution == 0 && dead_band == 0; }
 };
 
-/// At rest, all states 0, until the first step.
+/// At rest, all states 0, until the first step, or as take_over() leaves it.
 class PidProgram {
 public:
     explicit PidProgram(const SampledPid& law, const ProgramLimits& limits = {});
+
+    /// Bumpless transfer to automatic: all states are as after a long rest at this set point, measurement and output,
+    /// and the integral gives the present output u. From then on output limits and rounding apply to u itself.
+    void take_over(double r, double y, double u);
 
     /// The output u_k for r and y read at t_k.
     double step(double r, double y);

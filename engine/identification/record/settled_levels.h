@@ -22,7 +22,8 @@ std::vector<SettledLevel> settled_levels(const CleanRecord& record);
 
 /// Checks for levels that no linear model of a self-regulating plant explains:
 /// - y settles a quarter of its range apart at one level of u (within a twentieth of u's range): u alone does not
-///   decide where y goes. Warning contradictory-levels, of level bad;
+///   decide where y goes. Warning contradictory-levels, of level bad, which is lower for the record of a loop
+///   (closed_loop/closed_loop.h);
 /// - the gains between neighbouring levels differ by half and more: warning gain-varies, with each gain. In the
 ///   record's units. Empty if y's levels lie on a line.
 std::optional<Warning> level_warning(const CleanRecord& record);

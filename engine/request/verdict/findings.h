@@ -74,6 +74,9 @@ OptionalFinding overshoot(const VerdictInput& c);             ///< overshoot aft
 std::optional<Level> overshoot_level(const VerdictInput& c);  ///< its level, without its cure
 OptionalFinding movement(const VerdictInput& c);              ///< movement of u, compared with today's
 
+// replayed.cpp
+OptionalFinding replayed(const VerdictInput& c);  ///< the recorded time with this controller
+
 // actuator.cpp
 /// Steps that would need a steady-state u beyond its limits, with any controller.
 struct StepsBeyondActuator {

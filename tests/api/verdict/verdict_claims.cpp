@@ -75,6 +75,10 @@ const std::map<std::string, std::vector<std::string>>& places() {
         {"design_percent", {"/options/setpoint/overshoot"}},
         {"Tf", {"/controller/filter/Tf"}},
         {"region_cost", {"/region_cost"}},
+        {"IAE_ratio", {"/replay/IAE_ratio"}},
+        {"IAE_ratio_low", {"/replay/IAE_ratio_low"}},
+        {"IAE_ratio_high", {"/replay/IAE_ratio_high"}},
+        {"travel_ratio", {"/replay/travel_ratio"}},
         {"Ms_limit", {"/options/Ms", "/options/limit"}},
         {"Mt_limit", {"/options/Mt"}},
         {"Mks_limit", {"/options/Mks"}},
@@ -201,6 +205,10 @@ void check_finding(const Json& entry, const Json* today, const Json& finding, co
     if (code == "sample-time")
         fault(!(request["implement"]["sample_time"].get<double>() > *at(entry, "/longest_sample_time")),
               "the sample time is short enough");
+    if (code == "replay") {
+        const double low = *at(entry, "/replay/IAE_ratio_low"), high = *at(entry, "/replay/IAE_ratio_high");
+        fault(finding["level"] != (high < 1 ? "good" : low > 1 ? "warning" : "note"), "the band lies elsewhere");
+    }
     if (code == "PI-as-good")
         fault(figures["PI_load_IAE"].get<double>() > 1.0501 * *at(entry, "/performance/load/IAE"), "PI is worse");
     if (code == "derivative-pays")

@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
 
+#include "engine/identification/model_grade.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "tests/engine/identification/identified.h"
+#include "tests/engine/simulation/replay/replay_loop.h"
 
 namespace tunewright {
 namespace {
@@ -48,6 +51,31 @@ TEST(ContradictoryRecords, YThatSettlesAtTwoLevelsUnderOneUIsSaidToContradict) {
     const IdentifiedModel model = identified(record);
     ASSERT_TRUE(warns(model, "contradictory-levels"));
     EXPECT_THAT(detail_of(model, "contradictory-levels"), ::testing::HasSubstr("u = 100 y settles at 150"));
+    EXPECT_EQ(grade_of(model), ModelGrade::doubtful);
+}
+
+/// A load that the controller answers brings u back to its first level at another y: the model is right nevertheless.
+TEST(ContradictoryRecords, ALoadInALoopIsNoReasonAgainstTheModel) {
+    const Fopdt plant{.K = 2, .T = 40, .L = 8};
+    constexpr std::array kLevels = {50.0, 55.0, 50.0, 56.0, 51.0, 57.0, 50.0, 54.0, 49.0, 55.0};
+    test::OwnHour hour{.h = 4, .r = {}, .load = {}, .output = {}};
+    for (int k = 0; k < 1000; ++k) {
+        hour.r.push_back(kLevels[static_cast<std::size_t>((k + 20) / 100 % 10)]);
+        hour.load.push_back(k > 330 && k < 640 ? 1.6 : 0);
+        hour.output.push_back(0.02 * std::sin(37.0 * k));
+    }
+    LoopRows rows = test::own_loop(plant, {.Kp = 0.5, .Ki = 0.012}, hour, 40);
+    Record record;
+    for (std::size_t k = 0; k < rows.size(); ++k) record.t.push_back(hour.h * static_cast<double>(k));
+    for (double& u : rows.u) u = 0.1 * std::round(10 * u);
+    record.u = rows.u;
+    record.y = rows.y;
+    record.r = rows.r;
+    const IdentifiedModel model = identified(record);
+    const auto warning = std::ranges::find(model.warnings, "contradictory-levels", &Warning::code);
+    ASSERT_NE(warning, model.warnings.end());
+    EXPECT_EQ(warning->level, WarningLevel::warning);
+    EXPECT_NEAR(parameter(model.plant, "K"), plant.K, 0.1 * plant.K);
 }
 
 /// The levels of a plant whose gain falls from 3 to 1.

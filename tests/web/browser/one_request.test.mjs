@@ -1,12 +1,13 @@
-// Design shows one request: a slider changes one member of it, the kept design is the displayed one, and verdicts
-// belong to it.
+// Design shows one request: a slider changes one member of it, the kept design is the displayed one, and verdicts and
+// the replay of a record belong to it.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 import { openDesign, PLANT, setting, shows, slider } from "../design_page.mjs";
-import { browserTests, dropFile, root } from "../harness.mjs";
+import { browserTests, dropFile, root, tracesShown } from "../harness.mjs";
 import { assertRequestIsShown, designAnswered, designOnScreen, watchCalls } from "../shown_request.mjs";
+import { loopTest, stepTest } from "../step_record.mjs";
 
 const { withPage, jobOf, post } = browserTests();
 const heater = readFileSync(path.join(root, "tests/data/records/tclab-step.csv"), "utf8");
@@ -199,5 +200,45 @@ test("a job opens on the entry that its answer says to take", async () => {
     await page.goto(new URL(`#/jobs/${id}/design`, page.url()).href);
     await shows(page, "Kp", result.controllers[entry].controller.Kp);
     assert.deepEqual(await designOnScreen(page), designAnswered(result.controllers[entry]));
+  });
+});
+
+const replayCard = (page) => page.getByRole("region", { name: "Replay of the record", exact: true });
+
+test("the record of a loop is drawn again with the new settings, and its figures are those of the answer", async () => {
+  await withPage("", {}, async (page) => {
+    await tuneRecord(page, "loop.csv", loopTest());
+    const { result } = await jobOf(page);
+    const [entry] = result.controllers;
+    assert.ok(!result.replay.refused && !entry.replay.refused, JSON.stringify([result.replay.refused, entry.replay?.refused]));
+    // y and u of the record and of the entry, and the set point.
+    await tracesShown(page, "Record and replay", 5);
+    const rows = await replayCard(page).locator("tbody tr").allInnerTexts();
+    const shown = (value) => (value < 1000 ? value.toPrecision(3) : String(Number(value.toPrecision(3))));
+    const { IAE_ratio, IAE_ratio_low, IAE_ratio_high, figures } = entry.replay;
+    assert.ok(rows[0].endsWith(`${shown(IAE_ratio)} (${shown(IAE_ratio_low)} to ${shown(IAE_ratio_high)})`), rows[0]);
+    assert.ok(rows[1].includes(shown(result.replay.figures.IAE)) && rows[1].endsWith(shown(figures.IAE)), rows[1]);
+    const finding = entry.verdict.find(({ code }) => code === "replay");
+    assert.ok((await page.getByRole("region", { name: "Verdict" }).innerText()).includes(finding.text));
+    // A changed design is not the one that was replayed.
+    await slider(page, "Robustness Ms").focus();
+    await page.keyboard.press("ArrowRight");
+    await page.waitForURL(/Ms=1\.41/);
+    await replayCard(page).getByText("are not replayed").waitFor();
+    await tracesShown(page, "Record and replay", 0);
+  });
+});
+
+test("a test by hand has no replay, and the page says why; a model has none to speak of", async () => {
+  await withPage("", {}, async (page) => {
+    await tuneRecord(page, "step.csv", stepTest);
+    const { result } = await jobOf(page);
+    assert.equal(result.replay.refused.code, "manual");
+    assert.equal(await replayCard(page).locator("p").innerText(), result.replay.refused.text);
+    await tracesShown(page, "Record and replay", 0);
+  });
+  await withPage("#/new/fopdt?K=2&T=10&L=3", {}, async (page) => {
+    await openDesign(page);
+    assert.equal(await replayCard(page).count(), 0);
   });
 });

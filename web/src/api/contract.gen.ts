@@ -357,6 +357,7 @@ export type components = {
     TuningResult: {
       units?: components["schemas"]["Units"];
       model?: components["schemas"]["Model"];
+      replay?: components["schemas"]["ReplayedRecord"];
       operating_point?: components["schemas"]["OperatingPoint"];
       linear_model?: components["schemas"]["Plant"];
       controllers: components["schemas"]["Entry"][];
@@ -524,6 +525,25 @@ export type components = {
       detail: string;
       level: "warning" | "bad";
     };
+    ReplayedRecord: {
+      refused?: {
+        code: "manual" | "feedback" | "no-set-point" | "doubtful-model" | "unknown-region" | "no-error";
+        text: string;
+      };
+      from?: number;
+      to?: number;
+      figures?: components["schemas"]["ReplayFigures"];
+      t?: number[];
+      r?: (number | null)[];
+      y?: (number | null)[];
+      u?: (number | null)[];
+    };
+    ReplayFigures: {
+      IAE: number;
+      largest_error: number;
+      travel: number;
+      reversals: number;
+    };
     OperatingPoint: {
       states: {
         [key: string]: number;
@@ -560,6 +580,7 @@ export type components = {
       frontier?: components["schemas"]["Frontier"];
       rimc?: components["schemas"]["Rimc"];
       optimum_at_Ms?: components["schemas"]["OptimumAtMs"];
+      replay?: components["schemas"]["ReplayedEntry"];
       standing?: components["schemas"]["Standing"];
       tradeoff?: components["schemas"]["Tradeoff"];
       emulation?: components["schemas"]["Emulation"];
@@ -798,6 +819,19 @@ export type components = {
         [key: string]: string;
       };
     };
+    ReplayedEntry: {
+      refused?: {
+        code: "no-law" | "unstable" | "wide-band";
+        text: string;
+      };
+      figures?: components["schemas"]["ReplayFigures"];
+      IAE_ratio?: number;
+      IAE_ratio_low?: number;
+      IAE_ratio_high?: number;
+      travel_ratio?: number;
+      y?: (number | null)[];
+      u?: (number | null)[];
+    };
     Standing: {
       group: "holds" | "above_limit" | "not_settled" | "unstable";
       settles: boolean;
@@ -943,6 +977,7 @@ export type components = {
     };
     DesignAnswer: {
       model?: components["schemas"]["Model"];
+      replay?: components["schemas"]["ReplayedRecord"];
       operating_point?: components["schemas"]["OperatingPoint"];
       linear_model?: components["schemas"]["Plant"];
       controllers: components["schemas"]["Entry"][];
@@ -1435,6 +1470,8 @@ export type Saturation = components['schemas']['Saturation'];
 export type Outliers = components['schemas']['Outliers'];
 export type ClosedLoop = components['schemas']['ClosedLoop'];
 export type Warning = components['schemas']['Warning'];
+export type ReplayedRecord = components['schemas']['ReplayedRecord'];
+export type ReplayFigures = components['schemas']['ReplayFigures'];
 export type OperatingPoint = components['schemas']['OperatingPoint'];
 export type Entry = components['schemas']['Entry'];
 export type Finding = components['schemas']['Finding'];
@@ -1461,6 +1498,7 @@ export type Rimc = components['schemas']['Rimc'];
 export type FullController = components['schemas']['FullController'];
 export type DisturbancePeakCurve = components['schemas']['DisturbancePeakCurve'];
 export type OptimumAtMs = components['schemas']['OptimumAtMs'];
+export type ReplayedEntry = components['schemas']['ReplayedEntry'];
 export type Standing = components['schemas']['Standing'];
 export type Tradeoff = components['schemas']['Tradeoff'];
 export type TradeoffFigures = components['schemas']['TradeoffFigures'];

@@ -21,6 +21,7 @@ import type { UnitNames } from "../words/numbers.ts";
 import { cureButtons } from "./cures.ts";
 import { operatingCard } from "./cards/operating_card.ts";
 import { progressCard } from "./cards/progress_card.ts";
+import { replayCard } from "./cards/replay_card.ts";
 import { reportCards } from "./cards/report_cards.ts";
 import { titleCard } from "./cards/title_card.ts";
 import { isOfUltimate, showUltimate } from "./cards/ultimate_card.ts";
@@ -85,6 +86,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const reportsAt = (place: "above" | "below") => reports.filter((card) => card.place === place).map((card) => card.element);
   const legend = createLegend(store);
   const plots = plotGrid(announce);
+  const replay = replayCard(plots);
   const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
   let finished: { job: Job; result: Result } | null = null;
   let screen: OnScreen | null = null;
@@ -111,7 +113,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     h("div", { class: "more-cards" }, ...reportsAt("below"), ...own.below, computed),
   );
   const followsLater = h("p", { class: "hint", hidden: true }, "The figures below follow when you release the slider.");
-  const below = h("div", { class: "below" }, followsLater, model, ...reportsAt("above"), notes, more);
+  const below = h("div", { class: "below" }, followsLater, replay.element, model, ...reportsAt("above"), notes, more);
   const said = h("div", { class: "verdict-column" }, trouble, verdict, cures.element, progress.element, range.element, legend.element);
   const head = h("div", { class: "design-head" }, own.answer, said);
   const left = h("div", { class: "left-column" }, modified.controls, modified.front);
@@ -182,6 +184,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     showFigures(result, listed, drawn, names, units, held);
     linearNote.hidden = !hasLinear(drawn);
     showEntryPlots(plots, drawn, job.request, index);
+    replay.show(result, drawn, units);
     return drawn;
   }
 

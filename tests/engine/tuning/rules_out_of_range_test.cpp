@@ -95,7 +95,7 @@ const std::vector<Case> kRefuses{
     {"cohen_coon", {}, kNoDeadTime, "plant/L: Cohen-Coon divides by the dead time, but that of the model is 0. Give"},
     {"chien_hrones_reswick", {}, kNoDeadTime, "plant/L: Chien-Hrones-Reswick divides by the dead time"},
     {"lopez", {}, kNoDeadTime, "plant/L: Lopez divides by the dead time"},
-    {"rovira", {}, kNoLag, "plant/T: Rovira needs a lag, and the model is a pure dead time (T = 0). Use amigo"},
+    {"rovira", {}, kNoLag, "plant/T: Rovira needs a lag, but the model is a pure dead time (T = 0). Use amigo"},
     {"rovira", {}, Fopdt{.K = 1, .T = 1, .L = 6}, "plant: Rovira gives a negative integral time for L/T = 6"},
     {"zhuang_atherton", {}, kMuchDeadTime, "plant: Zhuang-Atherton gives a negative integral time for L/T = 8"},
     {"tavakoli_iae", {}, kNoLag, "plant/T: Tavakoli needs a lag"},

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "engine/simulation/sampled/held_motion.h"
+#include "engine/simulation/run/held_motion.h"
 
 namespace tunewright {
 namespace {
@@ -18,23 +19,22 @@ constexpr double kMaxSubsteps = 1000;       // of a row
 class PlantDifference {
 public:
     PlantDifference(const LinearPlant& plant, double delay, double h)
-        : plant_(plant),
+        : motion_(plant, 1.0, false),
           whole_(static_cast<long>(std::floor(delay / h + kInstantTolerance))),
-          rest_(std::max(0.0, delay - static_cast<double>(whole_) * h)),
-          reader_(plant) {
-        if (rest_ <= kInstantTolerance * h) rest_ = 0;
-        if (rest_ > 0) before_.emplace(plant, rest_);
-        after_.emplace(plant, h - rest_);
-        state_.x.assign(static_cast<Index>(plant.realisation().n), 0.0);
+          x_(static_cast<Index>(motion_.states()), 0.0) {
+        double rest = std::max(0.0, delay - static_cast<double>(whole_) * h);
+        if (rest <= kInstantTolerance * h) rest = 0;
+        if (rest > 0) before_ = motion_.step(rest);
+        after_ = motion_.step(h - rest);
     }
 
     /// The difference of y at row k, before the input changes there.
-    double output(long k) const { return reader_.at(state_.x, arriving(k - 1)).y; }
+    double output(long k) const { return motion_.value(x_, arriving(k - 1)); }
     void give(double difference) { given_.push_back(difference); }
     /// From row k to row k + 1.
     void advance(long k) {
-        if (before_) before_->advance(state_, arriving(k - 1));
-        after_->advance(state_, arriving(k));
+        if (before_) motion_.advance(*before_, arriving(k - 1), x_);
+        motion_.advance(after_, arriving(k), x_);
     }
 
 private:
@@ -43,12 +43,11 @@ private:
         return from < 0 ? 0 : given_[static_cast<Index>(from)];
     }
 
-    const LinearPlant& plant_;
+    HeldMotion motion_;
     long whole_;
-    double rest_;
-    HeldReader reader_;
-    std::optional<HeldMotion> before_, after_;
-    HeldState state_;
+    std::optional<HeldStep> before_;
+    HeldStep after_;
+    std::vector<double> x_;
     std::vector<double> given_;
 };
 

@@ -30,7 +30,7 @@ std::optional<Warning> contradiction(const CleanRecord& r, const std::vector<Set
                              "At u = " + u_text(r, a.u) + " y settles at " + y_text(r, a.y) +
                                  " (until t = " + t_text(r, a.until) + "), and at u = " + u_text(r, b.u) + " at " +
                                  y_text(r, b.y) + " (until t = " + t_text(r, b.until) +
-                                 "), so y does not depend on u alone, and no gain K fits the record. Check whether "
+                                 "), so y does not depend on u alone. Check whether "
                                  "column u is the input of the plant, and add other inputs that move y as measured "
                                  "disturbances.",
                              WarningLevel::bad};

@@ -741,6 +741,10 @@ export type components = {
       as_typed: {
         [key: string]: string;
       };
+      snippets?: {
+        name: string;
+        text: string;
+      }[];
       realised: components["schemas"]["Controller"];
       notes: {
         code: string;
@@ -1312,6 +1316,7 @@ export type components = {
       id: string;
       maker: string;
       name: string;
+      families: string[];
       form: string;
       needs: string[];
       evidence: string;
@@ -1321,6 +1326,7 @@ export type components = {
       id: string;
       maker: string;
       name: string;
+      families: string[];
       form: string;
       needs: string[];
       law: string;

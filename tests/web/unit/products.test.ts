@@ -31,10 +31,11 @@ import {
   typedText,
 } from "../../../web/src/words/products.ts";
 
-const summary = (id: string, maker: string, name: string, parameters: string[]): ProductSummary => ({
+const summary = (id: string, maker: string, name: string, parameters: string[], families: string[] = []): ProductSummary => ({
   id,
   maker,
   name,
+  families,
   form: "ideal",
   needs: [],
   evidence: "read",
@@ -42,7 +43,7 @@ const summary = (id: string, maker: string, name: string, parameters: string[]):
 });
 
 const LIST = [
-  summary("siemens_pid_compact", "Siemens", "PID_Compact (S7-1200/1500)", ["Gain", "Ti"]),
+  summary("siemens_pid_compact", "Siemens", "PID_Compact (S7-1200/1500)", ["Gain", "Ti"], ["TIA Portal"]),
   summary("emerson_deltav_series", "Emerson", "DeltaV PID, FORM Series", ["GAIN", "RESET"]),
   summary("emerson_deltav_standard", "Emerson", "DeltaV PID, FORM Standard", ["GAIN", "BETA"]),
   summary("foxboro_pid", "Foxboro", "I/A Series PID block", ["PBAND", "INT"]),
@@ -56,6 +57,7 @@ test("a product is found by words of maker, name, id and parameters, in any orde
   assert.deepEqual(found("deltav"), ["emerson_deltav_series", "emerson_deltav_standard"]);
   assert.deepEqual(found("PID-compact s7"), ["siemens_pid_compact"]);
   assert.deepEqual(found("pband"), ["foxboro_pid"]);
+  assert.deepEqual(found("tia"), ["siemens_pid_compact"], "by the maker's family");
   assert.deepEqual(found("honeywell"), []);
   assert.equal(found("").length, LIST.length);
   assert.equal(found("")[0], "emerson_deltav_series", "by maker");

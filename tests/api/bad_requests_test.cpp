@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "/plant/plants/0/type", "it must be fopdt"},
         BadRequest{"OtherNameForDeadTime", with_plant(kFopdt + R"(, "delay": 1})"), 422, "/plant/delay",
                    "did you mean L?"},
-        BadRequest{"PlantIsText", with_plant("\"hello\""), 422, "/plant", "\"hello\" is not known"},
+        BadRequest{"PlantIsText", with_plant("\"hello\""), 422, "/plant", "\"hello\" is unknown"},
         BadRequest{"EmptyDenominator", with_plant(R"({"type": "transfer_function", "num": [1], "den": []})"), 422,
                    "/plant/den", "den has 0 numbers"},
         BadRequest{"ZeroDenominator", with_plant(R"({"type": "transfer_function", "num": [1], "den": [0, 0]})"), 422,

@@ -56,7 +56,8 @@ TEST(MethodOptions, TheDescriptionOfRobustHasTheEnginesLimits) {
 
 TEST(MethodOptions, OnesThatStandInPlaceOfAnotherSaySoAndAreNotGivenWithIt) {
     int found = 0;
-    for (const Json& method : Json::parse(methods_json())["methods"])
+    const Json answered = Json::parse(methods_json());
+    for (const Json& method : answered["methods"])
         for (const auto& [name, option] : method["options"]["properties"].items()) {
             const std::string sentence = option.value("description", ""), opening = "In place of ";
             const bool says = sentence.starts_with(opening), known = option.contains("x-in-place-of");

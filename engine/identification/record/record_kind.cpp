@@ -4,8 +4,10 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <string>
 
 #include "engine/identification/record/series.h"
+#include "engine/number_text.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
@@ -158,10 +160,11 @@ InputLevels input_levels(const CleanRecord& r) {
 }
 
 std::vector<double> move_times(const CleanRecord& record) {
+    constexpr int kDigits = 12;  // 50 as the file has it, not 49.99999999999999 as the scaled record gives it back
     const InputLevels levels = input_levels(record);
     std::vector<double> times;
     for (std::size_t j = 1; j < levels.time.size() && times.size() < std::size_t{kMaxSteps}; ++j)
-        times.push_back(record.scale.t_origin + record.scale.t_scale * levels.time[j]);
+        times.push_back(std::stod(text(record.scale.t_origin + record.scale.t_scale * levels.time[j], kDigits)));
     return times;
 }
 

@@ -97,7 +97,7 @@ TEST(DataQuality, SpikesAreNamedByTheFilesOwnLines) {
     const DataQuality quality = describe_record(cleaned(record));
     ASSERT_TRUE(quality.outliers);
     EXPECT_THAT(quality.outliers->rows, ElementsAre(125, 255, 256));
-    EXPECT_THAT(quality.notes, Contains(HasSubstr("left out (line 125, 255, 256)")));
+    EXPECT_THAT(quality.notes, Contains(HasSubstr("removed (line 125, 255, 256)")));
 }
 
 TEST(DataQuality, ACoarseClockIsSpread) {

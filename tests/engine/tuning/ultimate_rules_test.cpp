@@ -100,8 +100,8 @@ TEST(UltimatePointOptions, HalfAPointIsRefused) {
         const auto answer = tuned("ziegler_nichols_ultimate", plant, given);
         return answer ? std::string("tuned") : answer.error().where + ": " + answer.error().message;
     };
-    EXPECT_EQ(refusal({{"Ku", 1.0}}), "Pu: Ku is given without Pu; give both, or neither.");
-    EXPECT_EQ(refusal({{"Pu", 1.0}}), "Ku: Pu is given without Ku; give both, or neither.");
+    EXPECT_EQ(refusal({{"Ku", 1.0}}), "Pu: Ku is given without Pu; give both or neither.");
+    EXPECT_EQ(refusal({{"Pu", 1.0}}), "Ku: Pu is given without Ku; give both or neither.");
     EXPECT_THAT(refusal({{"Ku", 0.0}, {"Pu", 1.0}}), HasSubstr("Ku: Ku is 0; it must be"));
 }
 

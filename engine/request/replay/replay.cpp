@@ -17,11 +17,11 @@ using Index = std::size_t;
 /// Determined with simulated hours of plants with one to four lags, inverse response or an integrator, with unmeasured
 /// loads, ramps, coloured noise and oscillations.
 struct ReplaySettings {
-    /// Half width of the band, relative to the ratio, without own_error. Of the hours within it all ratios were right
-    /// within 15 %, of the others two of three.
+    /// Half width of the band, relative to the ratio, without own_error. In 249 hours with models identified from them
+    /// 148 entries were within it, and all but one right within 15 %; of the others three of four.
     double max_half_width = 0.25;
     /// Added to the band on both sides, relative: rounding of y, a controller that computes between the rows. Without
-    /// it the bands held the truth for 86 % of the hours with identified models, with it for all.
+    /// it the bands held the truth for 86 % of these entries, with it for 99 %.
     double own_error = 0.03;
     /// Mean of |r - y| over the mean of |noise|: below it the noise is most of the error.
     double min_error_ratio = 1.5;

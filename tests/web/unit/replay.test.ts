@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Entry, Result } from "../../../web/src/api/types.ts";
 import { drawnEntries } from "../../../web/src/charts/drawn.ts";
-import { replayFrame } from "../../../web/src/charts/replay.ts";
+import { replayFrame, withReplays } from "../../../web/src/charts/replay.ts";
 
 const units = { time: "min", u: "%", y: "°C" };
 const figures = { IAE: 40, largest_error: 5, travel: 30, reversals: 4 };
@@ -39,4 +39,16 @@ test("without a replay there is no frame", () => {
   assert.equal(framed({ replay: recorded, controllers: [entry("robust", { replay: wide })] }, [0]), null);
   assert.equal(framed({ replay: recorded, controllers: [entry("robust")] }, [0]), null);
   assert.notEqual(framed({ replay: recorded, controllers: one }, [0]), null);
+});
+
+test("after a slider has moved, entries whose controller is that of the job keep its replay, and a changed one has none", () => {
+  const of = (Kp: number): Entry["controller"] => ({ form: "ideal", Kp, Ti: 10 }) as Entry["controller"];
+  const job: Result = {
+    replay: recorded,
+    controllers: [entry("robust", { controller: of(1), replay: better }), entry("baseline", { controller: of(0.5), replay: wide })],
+  };
+  const answer: Result = { controllers: [entry("robust", { controller: of(1.1) }), entry("baseline", { controller: of(0.5) })] };
+  const drawn = withReplays(job, drawnEntries(answer, [0, 1]));
+  assert.deepEqual(drawn.map((item) => item.entry.replay), [undefined, wide]);
+  assert.deepEqual(withReplays(job, drawnEntries(job, [0, 1])).map((item) => item.entry.replay), [better, wide]);
 });

@@ -6,6 +6,14 @@ import type { UnitNames } from "../words/numbers.ts";
 import type { Drawn } from "./drawn.ts";
 import { held } from "./record.ts";
 
+/** An answer to a slider has no replays: entries with the controller of an entry of the job get its replay. */
+export const withReplays = ({ controllers }: Result, drawn: Drawn[]): Drawn[] =>
+  drawn.map((item) => {
+    const controller = JSON.stringify(item.entry.controller);
+    const same = controllers.find((entry) => entry.replay && JSON.stringify(entry.controller) === controller);
+    return same?.replay ? { ...item, entry: { ...item.entry, replay: same.replay } } : item;
+  });
+
 /** Null if nothing is replayed: no record, a record that is refused, or no drawn entry with a replay. */
 export function replayFrame(result: Result, drawn: Drawn[], units: UnitNames): Frame | null {
   const recorded = result.replay;

@@ -184,7 +184,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     showFigures(result, listed, drawn, names, units, held);
     linearNote.hidden = !hasLinear(drawn);
     showEntryPlots(plots, drawn, job.request, index);
-    replay.show(result, drawn, units);
+    replay.show(whole, drawn, units);
     return drawn;
   }
 

@@ -2,7 +2,7 @@
 // figures, or the reason why it is not known.
 import type { Entry, Result } from "../../api/types.ts";
 import type { Drawn } from "../../charts/drawn.ts";
-import { replayFrame } from "../../charts/replay.ts";
+import { replayFrame, withReplays } from "../../charts/replay.ts";
 import { h, uniqueId } from "../../dom.ts";
 import type { PlotGrid } from "../../plot/grid.ts";
 import { swatch } from "../../plot/marks.ts";
@@ -11,13 +11,13 @@ import type { UnitNames } from "../../words/numbers.ts";
 
 export interface ReplayCard {
   element: HTMLElement;
-  /** Hides itself for a result without a record. */
+  /** `result`: of the job. `drawn`: its entries, or changed ones. Hides itself for a result without a record. */
   show(result: Result, drawn: Drawn[], units: UnitNames): void;
 }
 
 type Replay = NonNullable<Entry["replay"]>;
 
-const NOT_OF_JOB = "Settings that were changed here are not replayed. Keep the design to replay the record with it.";
+const CHANGED = "Changed settings are not replayed; a design is replayed when it is kept.";
 
 /** `plots`: the grid for its plot. */
 export function replayCard(plots: PlotGrid): ReplayCard {
@@ -38,9 +38,11 @@ export function replayCard(plots: PlotGrid): ReplayCard {
 
   return {
     element,
-    show(result, drawn, units) {
+    show(result, entries, units) {
       const recorded = result.replay;
-      const next = [recorded, units.y, units.u, units.time, ...drawn.flatMap(({ index, name, look, entry }) => [index, name, look, entry.replay])];
+      const drawn = withReplays(result, entries);
+      const lines = drawn.flatMap(({ index, name, look, entry }) => [index, name, look, entry.replay]);
+      const next = [recorded, units.y, units.u, units.time, ...lines];
       if (next.length === shown.length && next.every((value, at) => value === shown[at])) return;
       shown = next;
       element.hidden = !recorded;
@@ -56,7 +58,7 @@ export function replayCard(plots: PlotGrid): ReplayCard {
       const open = refused ? [] : drawn.filter(({ entry }) => entry.controller && !entry.replay?.figures);
       reasons.hidden = open.length === 0;
       reasons.replaceChildren(
-        ...open.map(({ name, entry }) => h("li", {}, `${name}: ${entry.replay?.refused?.text ?? NOT_OF_JOB}`)),
+        ...open.map(({ name, entry }) => h("li", {}, `${name}: ${entry.replay?.refused?.text ?? CHANGED}`)),
       );
     },
   };
@@ -86,7 +88,7 @@ function figuresTable(recorded: NonNullable<Result["replay"]>, replayed: Drawn[]
     h(
       "tbody",
       {},
-      row("IAE, over the record's", ["1", ...replayed.map(({ entry }) => ratioWords(entry.replay!))]),
+      row("IAE, divided by the record's", ["1", ...replayed.map(({ entry }) => ratioWords(entry.replay!))]),
       figures(withUnit("IAE", product(units.y, units.time)), "IAE"),
       figures(withUnit("Largest error", units.y), "largest_error"),
       figures(withUnit("Travel of u", units.u), "travel"),

@@ -5,12 +5,31 @@ import { DASH, formatNumber, formatParameter, formatPercent } from "./numbers.ts
 /** Lower case, without the signs that separate words in names. */
 const plain = (text: string): string => text.toLowerCase().replaceAll(/[^a-z0-9]+/g, " ");
 
-/** Products with every typed word in maker, name, id or parameters; first those whose name begins with it, then by
-    maker. */
+/** Names of families and of the makers' tools, by which their users know the blocks. */
+const FAMILIES: Record<string, string> = {
+  Siemens: "simatic step 7 step7 tia portal s7 300 400 1200 1500",
+  Rockwell: "allen bradley controllogix compactlogix guardlogix micrologix studio 5000 rslogix",
+  Schneider: "modicon m340 m580 unity pro ecostruxure control expert",
+  Emerson: "delta v",
+  Honeywell: "tps experion pks",
+  Yokogawa: "centum vp",
+  Foxboro: "ecostruxure foxboro dcs",
+  Mitsubishi: "melsec gx works",
+  Beckhoff: "twincat",
+  CODESYS: "wago ifm",
+  NI: "national instruments",
+  Klipper: "3d printer voron mainsail fluidd",
+  Marlin: "3d printer prusa ender creality",
+  Duet3D: "3d printer duet",
+  ESPHome: "home assistant esp32 esp8266",
+};
+
+/** Products with every typed word in maker, name, family, id or parameters; first those whose name begins with it, then
+    by maker. */
 export function findProducts(products: readonly ProductSummary[], typed: string): ProductSummary[] {
   const wanted = plain(typed).split(" ").filter(Boolean);
   const ranked = products.flatMap((product) => {
-    const name = plain(`${product.maker} ${product.name}`);
+    const name = plain(`${product.maker} ${product.name} ${FAMILIES[product.maker] ?? ""}`);
     const all = `${name} ${plain(product.id)} ${plain(product.parameters.join(" "))}`;
     if (!wanted.every((word) => all.includes(word))) return [];
     const inName = wanted.every((word) => ` ${name}`.includes(` ${word}`));

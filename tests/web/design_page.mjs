@@ -23,6 +23,7 @@ export const shows = (page, name, value) =>
 
 export async function openDesign(page, today = false) {
   if (today) {
+    await page.getByRole("region", { name: /^Today's settings/ }).getByLabel("Form").selectOption("ideal");
     await page.getByLabel("Kp", { exact: true }).fill("1.2");
     await page.getByLabel("Ti", { exact: true }).fill("40");
   }

@@ -11,10 +11,8 @@ import { addressOfJob, formatRoute, parseRoute, rewriteAddress, showsJob, showsS
 import type { JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 import type { CandidateChoice } from "./views/cards/candidates_card.ts";
-import { compareView } from "./views/compare.ts";
 import { designView } from "./views/design.ts";
 import { identifyView, noRecordView } from "./views/identify.ts";
-import { relayView } from "./views/relay.ts";
 import type { RelayView } from "./views/relay.ts";
 import { startView } from "./views/start.ts";
 import type { StartView, View } from "./views/start.ts";
@@ -85,19 +83,6 @@ export function screens(
     return start;
   }
 
-  /** Kept too, with its typed text. */
-  function relayScreen(): RelayView {
-    relay ??= relayView(announce, {
-      units: () => (ofStart() ? relayOf!.units : startScreen().typedUnits()),
-      onIdentify(test) {
-        if (!ofStart()) startScreen().beginLoop("record");
-        openRecord(test);
-      },
-      onPlant: (plant, values) => typed(({ screen }) => screen === "relay", { screen: "relay", plant, values }),
-    });
-    return relay;
-  }
-
   /** A screen in a file of its own, which most visits do not need; null if another is shown by now, or if it cannot
       be loaded. */
   async function later<Part>(load: Promise<Part>, route: Route, title: string, focus: boolean): Promise<Part | null> {
@@ -120,6 +105,22 @@ export function screens(
     });
     mount(range, "Range · Tunewright", focus);
     range.open(route);
+  }
+
+  /** Kept too, with its typed text. */
+  async function openRelay(route: Extract<Route, { screen: "relay" }>, focus: boolean): Promise<void> {
+    const part = await later(import("./views/relay.ts"), route, "Relay test", focus);
+    if (!part) return;
+    relay ??= part.relayView(announce, {
+      units: () => (ofStart() ? relayOf!.units : startScreen().typedUnits()),
+      onIdentify(test) {
+        if (!ofStart()) startScreen().beginLoop("record");
+        openRecord(test);
+      },
+      onPlant: (plant, values) => typed(({ screen }) => screen === "relay", { screen: "relay", plant, values }),
+    });
+    mount(relay, "Relay test · Tunewright", focus);
+    relay.open(route.plant, route.values);
   }
 
   function openRecord(test: IdentifyRequest): void {
@@ -260,6 +261,12 @@ export function screens(
     if (part) mount(part.methodsView(store, route.id), "Methods · Tunewright", focus);
   }
 
+  async function openCompare(route: Route, focus: boolean): Promise<void> {
+    const part = await later(import("./views/compare.ts"), route, "Compare", focus);
+    const events = { onJob: flow.take, onCompareAll: flow.compareAll };
+    if (part) mount(part.compareView(store, announce, events), "Compare · Tunewright", focus);
+  }
+
   function openJobScreen(route: JobRoute, focus: boolean): void {
     const before = store.get();
     const same = before.job?.id === route.job;
@@ -279,9 +286,7 @@ export function screens(
     if (route.screen === "design") {
       const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
       mount(designView(store, announce, events), "Design · Tunewright", focus);
-    } else {
-      mount(compareView(store, announce, { onJob: flow.take, onCompareAll: flow.compareAll }), "Compare · Tunewright", focus);
-    }
+    } else void openCompare(route, focus);
     flow.follow(route.job);
   }
 
@@ -300,12 +305,7 @@ export function screens(
       return;
     }
     if (route.screen === "range") return void openRange(route, !first);
-    if (route.screen === "relay") {
-      const screen = relayScreen();
-      mount(screen, "Relay test · Tunewright", !first);
-      screen.open(route.plant, route.values);
-      return;
-    }
+    if (route.screen === "relay") return void openRelay(route, !first);
     if (route.screen === "methods") return void openMethods(route, !first);
     if (route.screen === "jobs" || route.screen === "batch") return void openList(route, !first);
     mount(startScreen(), "Tunewright", !first);

@@ -116,6 +116,7 @@ test("the ideal design typed into a firmware: the loop as built has its own over
       controllers: [controller],
       implement: { product: "klipper", u_span: [0, 100] },
     });
+    await page.getByText("How it computes them").click();
     const cells = await page.locator("table.built tr", { hasText: "Overshoot" }).locator("td").allInnerTexts();
     const built = overshootOf(controllers[0]);
     const ideal = performance.setpoint.overshoot_percent;

@@ -165,6 +165,26 @@ test("the focus stays at the sliders when a step has nothing left to do, and whe
   });
 });
 
+test("one undo takes back all the presses of a key, and two sliders are two steps", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    // As fast as a key repeats, also on a busy machine.
+    await slider(page, "Robustness Ms").evaluate((range) => {
+      for (let press = 0; press < 5; press += 1)
+        range.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight", shiftKey: true, bubbles: true, cancelable: true }));
+    });
+    await page.waitForURL(/Ms=1\.9/);
+    await slider(page, "Kp").press("ArrowRight");
+    await page.waitForURL(/Kp=/);
+    const undo = page.getByRole("button", { name: "Undo" });
+    await undo.click();
+    await page.waitForURL((url) => /Ms=1\.9/.test(url.href) && !/Kp=/.test(url.href));
+    await undo.click();
+    await page.waitForURL((url) => !/Ms=/.test(url.href));
+    assert.ok(await undo.isDisabled());
+  });
+});
+
 test("a typed value that stands there already is no step, and nothing waits for it to be let go", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);

@@ -3,7 +3,7 @@ import test from "node:test";
 import type { Controller, Entry, Method, TuneEntry } from "../../../web/src/api/types.ts";
 import { frontFrame } from "../../../web/src/charts/front.ts";
 import { manualSliders, manualValue, isTied, optionSliders, withManual, withOption } from "../../../web/src/live/sliders.ts";
-import { firstStep, pointOf, stepBack, stepForward, stepTo, valuesOf } from "../../../web/src/live/point.ts";
+import { firstStep, pointOf, stepBack, stepForward, stepInPlace, stepTo, valuesOf } from "../../../web/src/live/point.ts";
 import type { Point } from "../../../web/src/live/point.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
@@ -151,6 +151,14 @@ test("steps go back and forth, a hundred of them, and a new one forgets what was
   assert.deepEqual(stepBack(stepBack(steps)).now, at(1.4));
   for (let index = 0; index < 150; index += 1) steps = stepTo(steps, at(1.1 + index / 1000));
   assert.equal(steps.past.length, 100);
+});
+
+test("keys that go on with a step are undone together", () => {
+  const at = (Ms: number): Point => ({ tune: { method: "robust", Ms }, manual: null });
+  let steps = stepTo(firstStep(at(1.4)), at(1.41));
+  for (const Ms of [1.42, 1.43]) steps = stepInPlace(steps, at(Ms));
+  assert.deepEqual([steps.now, stepBack(steps).now], [at(1.43), at(1.4)]);
+  assert.deepEqual(stepForward(stepBack(steps)).now, at(1.43));
 });
 
 test("the address says where the sliders stand, and brings them back", () => {

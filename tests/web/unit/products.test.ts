@@ -63,6 +63,18 @@ test("a product is found by words of maker, name, id and parameters, in any orde
   assert.equal(found("")[0], "emerson_deltav_series", "by maker");
 });
 
+test("a product is found by the family or the tool by which its users know it, before words that hold the letters", () => {
+  const list = [
+    summary("siemens_pid_compact", "Siemens", "PID_Compact (S7-1200/1500)", ["Gain"], ["TIA Portal"]),
+    summary("simple_pid", "m-lundberg", "simple-pid (Python)", ["differential_on_measurement"]),
+    summary("rockwell_pide", "Rockwell", "Logix PIDE", ["PGain"], ["ControlLogix", "Allen-Bradley"]),
+  ];
+  const ids = (typed: string): string[] => findProducts(list, typed).map((product) => product.id);
+  assert.deepEqual(ids("TIA"), ["siemens_pid_compact", "simple_pid"]);
+  assert.deepEqual(ids("ControlLogix"), ["rockwell_pide"]);
+  assert.deepEqual(ids("Allen-Bradley"), ["rockwell_pide"]);
+});
+
 test("a name's own words come before what lies inside words and parameters", () => {
   const list = [summary("a", "Acme", "Regulator", ["fox"]), summary("b", "Zeta", "Fox", [])];
   assert.deepEqual(

@@ -26,8 +26,8 @@ export interface SliderOptions {
   onMove(value: number): void;
   /** The pointer or the focus approaches it. */
   onTouch?(): void;
-  /** Released, or typed and left. */
-  onRelease(value: number): void;
+  /** Released, or typed and left. `byKey`: by a key of the slider, which may follow others of one gesture. */
+  onRelease(value: number, byKey: boolean): void;
   /** Double click and Delete: returns to the initial value. */
   onHome?(): void;
 }
@@ -57,6 +57,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
   let value = lo;
   let reported = NaN;
   let heading = 1;
+  let byKey = false;
   const field = textField({ ...options, value: "" }, errors);
   const range = h("input", { type: "range", min: 0, max: STEPS, step: 1, "aria-label": `${options.label}, slider` });
   field.input.after(range);
@@ -111,7 +112,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
 
   function release(): void {
     reported = value;
-    options.onRelease(value);
+    options.onRelease(value, byKey);
   }
 
   /** By a key or a text: moved and released in one event. An unchanged value is not a move: it would never be
@@ -139,7 +140,9 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
   if (options.onTouch) for (const event of ["pointerenter", "focus"]) range.addEventListener(event, () => options.onTouch!());
   // A drag that ends where it began also ends the hold.
   range.addEventListener("change", release);
+  range.addEventListener("pointerdown", () => (byKey = false));
   range.addEventListener("keydown", (event) => {
+    byKey = true;
     if (event.key === "Delete" && options.onHome) {
       event.preventDefault();
       return options.onHome();
@@ -155,6 +158,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
   });
   if (options.onHome) range.addEventListener("dblclick", () => options.onHome!());
   field.input.addEventListener("change", () => {
+    byKey = false;
     const parsed = parseNumber(field.input.value, options.label);
     const bad = !parsed.ok ? parsed.sentence : wrongSign(parsed.value) || (options.wrong?.(parsed.value) ?? "");
     if (bad || !parsed.ok) return errors.refuse(field.control, bad);

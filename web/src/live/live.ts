@@ -6,7 +6,7 @@ import { latest } from "../api/latest.ts";
 import { designOf, entriesOf, withHeldPoints } from "../api/live.ts";
 import type { Controller, Entry } from "../api/types.ts";
 import { ahead } from "./ahead.ts";
-import { samePoint, stepBack, stepForward, stepTo } from "./point.ts";
+import { samePoint, stepBack, stepForward, stepInPlace, stepTo } from "./point.ts";
 import type { Point, Steps } from "./point.ts";
 import { costOfRow, designShown, manualQuestion, manualShown, questionOf } from "./shown.ts";
 import type { Shown, Modifiable } from "./shown.ts";
@@ -49,8 +49,9 @@ export interface Live {
   move(point: Point): void;
   /** The possible next points, the likeliest first. */
   expect(points: Iterable<Point>): void;
-  /** Released, or a value typed: one step. */
-  settle(point: Point): void;
+  /** Released, or a value typed: one step. `gesture`: keys of one slider that follow each other at once are one step
+      together. */
+  settle(point: Point, gesture?: string): void;
   undo(): void;
   redo(): void;
   /** Back to the proposal. */
@@ -62,6 +63,8 @@ export interface Live {
 
 const LATE_MS = 150;
 const RETRY_S = 2;
+/** The longest pause between the keys of one gesture. */
+const GESTURE_MS = 1000;
 /** A design that takes longer to compute does not follow the slider. */
 const LONGEST_FRAME_MS = 250;
 
@@ -79,6 +82,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
   const held = signal(false);
   const late = signal(false);
   const trouble = signal("");
+  let lastKey = { gesture: "", at: 0 };
   let lateTimer: ReturnType<typeof setTimeout> | undefined;
   let retryTimer: ReturnType<typeof setTimeout> | undefined;
 
@@ -226,6 +230,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     canRedo: computed(() => (steps.value?.future.length ?? 0) > 0),
     steps,
     start(from, { past, now: at, future }) {
+      lastKey.gesture = "";
       standAt(from, { past, now: at, future });
       if (!samePoint(at, from.point)) ask({ point: at, held: false });
     },
@@ -238,18 +243,27 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
       ask({ point: to, held: true });
     },
     expect: (points) => next.towards(following(points)),
-    settle(to) {
+    settle(to, gesture = "") {
       next.towards([]);
       const before = steps.peek();
       if (!before) return;
+      const goesOn = gesture !== "" && gesture === lastKey.gesture && performance.now() - lastKey.at < GESTURE_MS;
+      lastKey = { gesture, at: performance.now() };
       if (samePoint(before.now, to)) {
         held.value = false;
         ask({ point: to, held: false });
-      } else go(stepTo(before, to));
+      } else go(goesOn && before.past.length > 0 ? stepInPlace(before, to) : stepTo(before, to));
     },
-    undo: () => steps.peek() && go(stepBack(steps.peek()!)),
-    redo: () => steps.peek() && go(stepForward(steps.peek()!)),
+    undo() {
+      lastKey.gesture = "";
+      if (steps.peek()) go(stepBack(steps.peek()!));
+    },
+    redo() {
+      lastKey.gesture = "";
+      if (steps.peek()) go(stepForward(steps.peek()!));
+    },
     reset() {
+      lastKey.gesture = "";
       if (steps.peek() && proposal.peek()) go(stepTo(steps.peek()!, proposal.peek()!.point));
     },
     retry,

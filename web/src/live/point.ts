@@ -29,6 +29,9 @@ export function stepTo(steps: Steps, next: Point): Steps {
   return { past: [...steps.past, steps.now].slice(-MAX_STEPS), now: next, future: [] };
 }
 
+/** Goes on with the last step. */
+export const stepInPlace = (steps: Steps, next: Point): Steps => ({ past: steps.past, now: next, future: [] });
+
 export function stepBack(steps: Steps): Steps {
   const before = steps.past.at(-1);
   return before ? { past: steps.past.slice(0, -1), now: before, future: [steps.now, ...steps.future] } : steps;

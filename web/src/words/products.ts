@@ -10,12 +10,11 @@ const plain = (text: string): string => text.toLowerCase().replaceAll(/[^a-z0-9]
 export function findProducts(products: readonly ProductSummary[], typed: string): ProductSummary[] {
   const wanted = plain(typed).split(" ").filter(Boolean);
   const ranked = products.flatMap((product) => {
-    const name = plain(`${product.maker} ${product.name}`);
-    const families = plain(product.families.join(" "));
-    const all = `${name} ${families} ${plain(product.id)} ${plain(product.parameters.join(" "))}`;
+    const name = plain(`${product.maker} ${product.name} ${product.families.join(" ")}`);
+    const all = `${name} ${plain(product.id)} ${plain(product.parameters.join(" "))}`;
     if (!wanted.every((word) => all.includes(word))) return [];
     const inName = wanted.every((word) => ` ${name}`.includes(` ${word}`));
-    return [{ product, rank: inName ? 0 : wanted.every((word) => `${name} ${families}`.includes(word)) ? 1 : 2 }];
+    return [{ product, rank: inName ? 0 : wanted.every((word) => name.includes(word)) ? 1 : 2 }];
   });
   const order = (a: ProductSummary, b: ProductSummary): number =>
     a.maker.localeCompare(b.maker) || a.name.localeCompare(b.name);

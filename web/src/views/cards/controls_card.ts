@@ -106,7 +106,7 @@ export function controlsCard(live: Live): ControlsCard {
         spoken: (value) => spoken(spec, value),
         onMove: (value) => move(made, spec, value, modify),
         onTouch: () => live.held.peek() || live.expect(points(made.near(AT_TOUCH), spec, modify)),
-        onRelease: (value) => live.settle(modify(spec, value)),
+        onRelease: (value, byKey) => live.settle(modify(spec, value), byKey ? spec.id : ""),
         onHome: () => home(spec),
       },
       errors,

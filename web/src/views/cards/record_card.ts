@@ -96,6 +96,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     const isNewest = beginReading();
     const large = tooLarge(chosen, await maxBodyBytes());
     if (!isNewest()) return;
+    status.className = large ? "trouble" : "hint";
     if (large) {
       status.textContent = large;
       return;

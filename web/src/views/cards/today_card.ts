@@ -155,7 +155,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     }
     own.load({});
     const known = baseline && FORMS.some(([id]) => id === baseline.form);
-    form.input.value = known ? baseline.form : "ideal";
+    form.input.value = known ? baseline.form : mine && !baseline ? OWN : "ideal";
     label();
     const text = (value: unknown): string => (typeof value === "number" ? exactText(value) : "");
     names().forEach((key, index) => {
@@ -201,7 +201,14 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     readName: () => name.input.value.trim(),
     readUnits: () => unitsOf(() => true),
     typedUnits: () => unitsOf((part) => typed.has(part)),
-    setMine,
+    setMine(next) {
+      const empty = [...slots, filter, delta].every((field) => field.input.value.trim() === "");
+      if (next && next.product !== mine?.product && empty && !isOwn()) {
+        setMine(next);
+        form.input.value = OWN;
+        label();
+      } else setMine(next);
+    },
     read() {
       if (isOwn()) return readOwn();
       const typed = slots.map((slot) => slot.input.value.trim());

@@ -87,7 +87,7 @@ code::Provenance provenance_of(const Json& result, const Json& entry, const Json
     }
     if (entry.contains("/implemented/robustness/Ms"_json_pointer))
         rows.emplace_back("Ms, implemented", figure_at(entry, "/implemented/robustness", "Ms") +
-                                             ", with the sample time and the rules of the request's implement");
+                                                 ", with the sample time and the rules of the request's implement");
     if (entry.contains("/performance/load"_json_pointer))
         rows.emplace_back("Load IAE", figure_at(entry, "/performance/load", "IAE") + ", in the request's units");
     add_origin(result, rows);

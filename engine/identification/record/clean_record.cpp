@@ -54,7 +54,7 @@ std::optional<Error> check_rows(const Record& r, const RecordRows& rows, const C
         return not_identifiable("record", "The record has " + std::to_string(n) + " usable samples" +
                                               (r.t.size() > static_cast<std::size_t>(n)
                                                    ? " in " + std::to_string(r.t.size()) +
-                                                         " usable usable rows (the others have no y, no u or no time)"
+                                                         " rows (the others have no y, no u or no time)"
                                                    : std::string()) +
                                               "; at least " + std::to_string(kMinSamples) +
                                               " are needed, and at least 50 during the response are recommended.");

@@ -22,7 +22,7 @@ struct OperatingPoint {
 /// The steady state of the nominal input, as NonlinearSystem found it; no new search.
 OperatingPoint operating_point(const NonlinearSystem& system);
 
-/// Equations in the states Equations in the states x1, x2, ... of the plant's realisation, with operating point, input
+/// Equations in the states x1, x2, ... of the plant's realisation, with operating point, input
 /// u and output 0, and the plant's dead time. Errors: unsupported for a plant with a direct term from u to y, or of
 /// more than 20 states.
 Expected<NonlinearSystem> as_equations(const LinearPlant& plant);

@@ -67,12 +67,13 @@ test("a product is found by the family or the tool by which its users know it, b
   const list = [
     summary("siemens_pid_compact", "Siemens", "PID_Compact (S7-1200/1500)", ["Gain"], ["TIA Portal"]),
     summary("simple_pid", "m-lundberg", "simple-pid (Python)", ["differential_on_measurement"]),
-    summary("rockwell_pide", "Rockwell", "Logix PIDE", ["PGain"], ["ControlLogix", "Allen-Bradley"]),
+    summary("rockwell_pide", "Rockwell", "Logix PIDE", ["PGain"], ["ControlLogix", "CompactLogix", "Allen-Bradley"]),
   ];
   const ids = (typed: string): string[] => findProducts(list, typed).map((product) => product.id);
   assert.deepEqual(ids("TIA"), ["siemens_pid_compact", "simple_pid"]);
   assert.deepEqual(ids("ControlLogix"), ["rockwell_pide"]);
   assert.deepEqual(ids("Allen-Bradley"), ["rockwell_pide"]);
+  assert.deepEqual(ids("pid compact"), ["siemens_pid_compact", "rockwell_pide"], "a name comes before a family");
 });
 
 test("a name's own words come before what lies inside words and parameters", () => {

@@ -10,11 +10,17 @@ const plain = (text: string): string => text.toLowerCase().replaceAll(/[^a-z0-9]
 export function findProducts(products: readonly ProductSummary[], typed: string): ProductSummary[] {
   const wanted = plain(typed).split(" ").filter(Boolean);
   const ranked = products.flatMap((product) => {
-    const name = plain(`${product.maker} ${product.name} ${product.families.join(" ")}`);
-    const all = `${name} ${plain(product.id)} ${plain(product.parameters.join(" "))}`;
-    if (!wanted.every((word) => all.includes(word))) return [];
-    const inName = wanted.every((word) => ` ${name}`.includes(` ${word}`));
-    return [{ product, rank: inName ? 0 : wanted.every((word) => name.includes(word)) ? 1 : 2 }];
+    const name = ` ${plain(`${product.maker} ${product.name}`)}`;
+    const known = `${name} ${plain(product.families.join(" "))}`;
+    const all = `${known} ${plain(product.id)} ${plain(product.parameters.join(" "))}`;
+    const ranks = [
+      wanted.every((word) => name.includes(` ${word}`)),
+      wanted.every((word) => known.includes(` ${word}`)),
+      wanted.every((word) => known.includes(word)),
+      wanted.every((word) => all.includes(word)),
+    ];
+    const rank = ranks.indexOf(true);
+    return rank < 0 ? [] : [{ product, rank }];
   });
   const order = (a: ProductSummary, b: ProductSummary): number =>
     a.maker.localeCompare(b.maker) || a.name.localeCompare(b.name);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/contract/controller.h"
+#include "api/contract/controller_record.h"
 #include "api/contract/plant/typed.h"
 #include "api/contract/preview.h"
 #include "api/contract/record.h"
@@ -17,8 +18,10 @@
 #include "api/outline.h"
 #include "api/range_service.h"
 #include "engine/evaluation/best_so_far.h"
+#include "engine/identification/controller_law/identify_controller.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
+#include "engine/tuning/device/device_model.h"
 
 namespace tunewright::api {
 namespace {
@@ -147,8 +150,19 @@ Expected<TuningResult> tuned(JobRequest request, const RunControl& control) {
     read.record = {};
     const IdentifyQuestion question = request.identify;
     const bool recorded = request.record.has_value();
+    std::vector<Warning> of_baseline;
+    if (request.baseline_from_record) {
+        auto found = identify_controller(request.read.record, {});
+        if (!found) return Error{found.error().kind, "baseline", found.error().message};
+        request.baseline = device::continuous(found->pid);
+        of_baseline = std::move(found->warnings);
+    }
     auto result = tune(to_engine(std::move(request)), control);
     if (!result || !result->model) return result;
+    for (TuningEntry& entry : result->controllers)
+        if (entry.method == "baseline" && entry.evaluation)
+            entry.evaluation->warnings.insert(entry.evaluation->warnings.begin(), of_baseline.begin(),
+                                              of_baseline.end());
     if (recorded) {
         add_reading(read, *result->model);
         leave_out_traces(question, *result->model);
@@ -311,6 +325,27 @@ Answer identify_call(std::string_view body, const RunControl& control) {
     const auto& request = std::get<IdentifyRequest>(decoded);
 
     return identified(request.read, request.identify, control);
+}
+
+Answer controller_record_call(std::string_view body, const RunControl&) {
+    const auto decoded = read_body(body, controller_record_request_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
+    const auto& request = std::get<ControllerRecordRequest>(decoded);
+    auto found = identify_controller(request.read.record, {.sample_time = request.sample_time});
+    if (!found) return refusal(to_problem(found.error()));
+    ControllerRecordAnswer answer{.found = std::move(*found), .typing = {}, .not_typed = {}};
+    if (request.device && request.device->product) {
+        const product::Product& product = *request.device->product;
+        auto converted = product::to_settings(product, answer.found.pid, request.device->context, true);
+        if (converted)
+            answer.typing.emplace(SettingsAnswer{&product, converted->settings, converted->settings,
+                                                 converted->realised, std::move(converted->notes)});
+        else
+            answer.not_typed = converted.error().message;
+    }
+    Writer out;
+    controller_record_answer_contract().write(answer, out);
+    return {200, out.take()};
 }
 
 Answer parse_plant_call(std::string_view body) {

@@ -70,6 +70,8 @@ Answer design_call(std::string_view body, const RunControl& control);    ///< PO
 Answer frontier_call(std::string_view body, const RunControl& control);  ///< POST /v1/frontier
 Answer identify_call(std::string_view body, const RunControl& control);  ///< POST /v1/identify
 
+Answer controller_record_call(std::string_view body, const RunControl& control);  ///< POST /v1/records/controller
+
 /// POST /v1/records/preview: of JSON, and of the file itself, in any encoding.
 Answer preview_call(std::string_view body);
 Answer preview_file(std::string_view bytes);

@@ -139,6 +139,13 @@ Json record_of(const CsvRequest& question, std::string csv) {
     return record;
 }
 
+std::string controller_record_request(const CsvRequest& question, const std::string& file) {
+    std::string storage;
+    Json request{{"record", record_of(question, std::string(utf8_text(file, storage)))}};
+    if (!question.answer_unit.empty()) request["units"] = {{"time", question.answer_unit}};
+    return request.dump();
+}
+
 std::optional<std::string> request_text(const std::string& file) {
     std::string storage;
     const std::string_view text = utf8_text(file, storage);
@@ -169,7 +176,9 @@ std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::o
                               : as_csv                          ? std::string()
                                                                 : words.record.time_unit;
     if (!unit.empty() && request.value("units", Json::object()).is_object()) request["units"]["time"] = unit;
-    if (!words.baseline.empty()) {
+    if (words.baseline == "from-record") {
+        request["baseline"] = words.baseline;
+    } else if (!words.baseline.empty()) {
         Json& today = request["baseline"] = {{"form", "ideal"}};
         const std::vector<std::string> values = words_of(words.baseline);
         constexpr const char* kNames[] = {"Kp", "Ti", "Td"};

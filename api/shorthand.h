@@ -28,13 +28,16 @@ struct TuneWords {
     std::string plant;                 ///< the plant as `tunewright plant` reads it; "": it is in the file
     std::vector<std::string> methods;  ///< empty: those of the file, or the default
     std::string Ms;         ///< limit of Ms and Mt for robust and all; without either method, Ms of each; "": not given
-    std::string baseline;   ///< today's settings, "Kp Ti Td"; "": those of the file, or none
+    std::string baseline;   ///< today's settings, "Kp Ti Td" or "from-record"; "": those of the file, or none
     std::string Ku, Pu, K;  ///< instead of a plant and a file: the ultimate point, and optionally the static gain
     CsvRequest record;      ///< if the file is a recorded test; for a plant, its time_unit is that of all times
 };
 
 /// The member `record` of a request, with that text.
 Json record_of(const CsvRequest& question, std::string csv);
+
+/// The request of POST /v1/records/controller for a file in any encoding.
+std::string controller_record_request(const CsvRequest& question, const std::string& file);
 
 /// The text as UTF-8 if it is one JSON object in any encoding; a log with an object in each line is not. Otherwise
 /// empty.

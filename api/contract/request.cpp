@@ -65,20 +65,25 @@ void check_source(const Json& value, const std::vector<std::string>& sources, co
                      others + ".");
 }
 
+constexpr const char* kFromRecord = "from-record";
+
 void read_baseline(const Json& value, JobRequest& request, Reader& reader) {
+    request.baseline_from_record = value == kFromRecord;
+    if (request.baseline_from_record) return;
     const bool settings = value.is_object() && value.contains("product");
     if (settings) return object(baseline_settings_contract()).read(value, request.baseline_settings.emplace(), reader);
     maybe(one_of(controller_contract())).read(value, request.baseline, reader);
 }
 
 void write_baseline(const JobRequest& request, Writer& out) {
+    if (request.baseline_from_record) return out.text(kFromRecord);
     if (request.baseline_settings) return baseline_settings_contract().write(*request.baseline_settings, out);
     maybe(one_of(controller_contract())).write(request.baseline, out);
 }
 
 Json baseline_schema(SchemaBook& book) {
-    return Json{{"oneOf",
-                 Json::array({one_of(controller_contract()).schema(book), baseline_settings_contract().schema(book)})}};
+    return Json{{"oneOf", Json::array({one_of(controller_contract()).schema(book),
+                                       baseline_settings_contract().schema(book), Json{{"const", kFromRecord}}})}};
 }
 
 // Converts settings that are typed into a product to the ideal form, which is then the baseline.
@@ -124,6 +129,8 @@ void check_job(const Json& value, JobRequest& request, Reader& reader) {
                         "covariance is missing, and uncertainty \"identified\" needs it. Send the model as in the "
                         "answer, or use uncertainty \"auto\" or \"none\".");
     }
+    if (request.baseline_from_record && !request.record)
+        reader.fault_at("baseline", "baseline is \"from-record\", which needs a record. Give the settings instead.");
     if (!request.plant) return;
     request.subject = subject_of(*request.plant, reader);
     if (!request.subject || !request.baseline) return;
@@ -156,8 +163,12 @@ void add_judged(Description<Request>& d) {
     d.field(
          "baseline", [](const Json& value, Request& request, Reader& reader) { read_baseline(value, request, reader); },
          [](const Request& request, Writer& out) { write_baseline(request, out); }, baseline_schema,
-         "Today's settings, which become the last entry: a controller, or a product with its settings as typed.", {},
-         [](const Request& request) { return !request.baseline && !request.baseline_settings; })
+         "Today's settings, which become the last entry: a controller, a product with its settings as typed, or "
+         "from-record: as POST /v1/records/controller finds them.",
+         {},
+         [](const Request& request) {
+             return !request.baseline && !request.baseline_settings && !request.baseline_from_record;
+         })
         .field("implement", &Request::implement, maybe(object(implement_contract())),
                "The user's own controller, for which entries are converted and evaluated.")
         .field("evaluate", &Request::evaluate, object(evaluate_options_contract()),

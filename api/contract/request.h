@@ -22,6 +22,7 @@ struct JobRequest : JobTerms {
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
     std::optional<GivenBaseline> baseline_settings;  ///< instead of `baseline`: as typed into a product
+    bool baseline_from_record = false;               ///< instead of both: as the record shows it
     std::optional<GivenDevice> implement;
     EvaluateOptions evaluate;
     verdict::GivenSteps given_steps;  ///< of `evaluate`

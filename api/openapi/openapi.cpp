@@ -3,6 +3,7 @@
 #include <set>
 #include <string>
 
+#include "api/contract/controller_record.h"
 #include "api/contract/plant/typed.h"
 #include "api/contract/preview.h"
 #include "api/contract/product/conversion.h"
@@ -94,6 +95,8 @@ std::string openapi_json() {
         evaluate_answer_contract().schema(book);
         identify_request_contract().schema(book);
         identify_answer_contract().schema(book);
+        controller_record_request_contract().schema(book);
+        controller_record_answer_contract().schema(book);
         plant_question_contract().schema(book);
         plant_answer_contract().schema(book);
         preview_request_contract().schema(book);

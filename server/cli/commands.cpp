@@ -148,6 +148,14 @@ int identify(const IdentifyCommand& command) {
     return answered(answer, command.output, api::model_text, command.file);
 }
 
+int controller_record(const ControllerRecordCommand& command) {
+    std::string text;
+    if (!read_input(command.file, text)) return write_problem(unreadable(command.file), command.output);
+    const auto request = api::request_text(text);
+    const std::string asked = request ? *request : api::controller_record_request(command.question, text);
+    return answered(api::controller_record_call(asked, {}), command.output, {}, command.file);
+}
+
 int plant(const PlantCommand& command) {
     std::string text = command.text;
     if (text == "-") read_input("-", text);

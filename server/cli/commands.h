@@ -38,6 +38,13 @@ struct IdentifyCommand {
 /// The file's size is limited only by the length of a record, 2,000,000 samples.
 int identify(const IdentifyCommand& command);
 
+struct ControllerRecordCommand {
+    std::string file;  ///< a CSV file or a log, or a request of POST /v1/records/controller; "-": standard input
+    api::CsvRequest question;
+    OutputWords output;
+};
+int controller_record(const ControllerRecordCommand& command);
+
 struct PlantCommand {
     std::string text;  ///< "-": standard input
     std::string time_unit = "s";

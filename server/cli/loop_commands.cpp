@@ -65,7 +65,8 @@ void add_tune_options(CLI::App& app, TuneCommand& command) {
     app.add_option("--Ms", command.words.Ms,
                    "Limit of Ms and of Mt, in (1, " + text(limits::kMaxMs) + "]; default " + text(limits::kDefaultMs))
         ->type_name("NUMBER");
-    app.add_option("--baseline", command.words.baseline, "Today's settings in the ideal form: \"Kp Ti Td\"")
+    app.add_option("--baseline", command.words.baseline,
+                   "Today's settings in the ideal form: \"Kp Ti Td\"; from-record: as a recorded test shows them")
         ->type_name("TEXT");
     add_record_options(app, command.words.record);
     CLI::Option* plot = app.add_flag("--plot", command.plot, "The table, and below it a plot of the best responses");
@@ -145,6 +146,14 @@ void add_loop_commands(CommandTree& tree) {
     identify_app.add_flag("--traces", identifying.question.traces,
                           "CSV: include the record and the simulated responses of the models");
     add_output_options(identify_app, identifying.output, true);
+
+    ControllerRecordCommand& asking = tree.keep<ControllerRecordCommand>();
+    CLI::App& asking_app = tree.add("controller", "The controller's settings from a record of its loop in automatic",
+                                    [&] { return controller_record(asking); });
+    asking_app.add_option("file", asking.file, "CSV, or {record, implement} as JSON; - reads standard input")
+        ->required();
+    add_record_options(asking_app, asking.question);
+    add_output_options(asking_app, asking.output, false);
 
     PlantCommand& typing = tree.keep<PlantCommand>();
     CLI::App& plant_app = tree.add("plant", "A typed plant such as \"2 e^(-3s)/(10s+1)\" as JSON, with its formula",

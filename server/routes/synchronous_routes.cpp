@@ -182,6 +182,7 @@ void add_synchronous_routes(http::Router& router, ComputeSlots& turns, Timer& ti
     add("/v1/frontier", of_body(api::frontier_call), kDesignTime);
     add("/v1/range", of_body(api::range_call), kRangeTime);
     add("/v1/identify", of_body(api::identify_call), kIdentifyTime);
+    add("/v1/records/controller", of_body(api::controller_record_call), kIdentifyTime);
     add("/v1/records/preview", preview, kIdentifyTime, refuse_file_call);
     add("/v1/experiments/relay", of_body(api::relay_call), kRelayTime);
     add("/v1/experiments/range", of_body(api::range_experiments_call), kRangeTime);

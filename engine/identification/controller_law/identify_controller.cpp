@@ -147,7 +147,10 @@ public:
         // A residual below that of rounded y says that the controller read y as rounded as the record has it.
         constexpr double kMinShareOfRounding = 0.3, kShareAfterFilter = 0.01;
         const LawFit corrected = without_errors_of_y(s_, moments_, law_, std::min(y_variance_, y_rounding));
-        y_may_be_rounded_ = s_.y_step > 0 && y_variance_ > kShareAfterFilter * y_rounding;
+        // Noise of several steps makes the errors of rounding white, and small beside y's moves.
+        constexpr double kCoarseSteps = 3;
+        y_may_be_rounded_ =
+            white_noise(s_.y) < kCoarseSteps * s_.y_step && y_variance_ > kShareAfterFilter * y_rounding;
         const bool correct = corrected.solved && s_.y_step > 0 && y_variance_ > kMinShareOfRounding * y_rounding;
         fit_ = correct ? corrected : law_.fit;
         other_fit_ = correct ? law_.fit : corrected;

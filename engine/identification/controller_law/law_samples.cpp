@@ -11,8 +11,9 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMinHeldSamples = 3;   // at an end of u's range: two rows there are chance
-constexpr int kMinStillSamples = 8;  // without a move of u: rounding alone seldom makes more
+constexpr std::size_t kMaxRows = 10'000;  // half a second of search; today's settings are in the last ones
+constexpr int kMinHeldSamples = 3;        // at an end of u's range: two rows there are chance
+constexpr int kMinStillSamples = 8;       // without a move of u: rounding alone seldom makes more
 constexpr std::size_t kMinMovesForPeriod = 12, kMaxMovesForPeriod = 1500;
 // Moves that keep step: all but those that manual operation makes; evidence: the logarithm of the odds against chance.
 constexpr double kMinShareInStep = 0.99, kMinEvidence = 20;
@@ -27,7 +28,7 @@ struct AllRows {
 AllRows rows_with_numbers(const Record& record, const std::vector<bool>& automatic) {
     AllRows rows;
     double last = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < record.t.size(); ++i) {
+    for (std::size_t i = record.t.size() - std::min(record.t.size(), kMaxRows); i < record.t.size(); ++i) {
         const bool set = record.r.empty() || std::isfinite(record.r[i]);
         if (!std::isfinite(record.t[i]) || !std::isfinite(record.u[i]) || !std::isfinite(record.y[i]) || !set) continue;
         if (record.t[i] <= last) continue;

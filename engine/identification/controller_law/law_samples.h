@@ -23,7 +23,7 @@ struct LawSamples {
     int size() const { return static_cast<int>(t.size()); }
 };
 
-/// 1. Rows without a time, u or y (or r, where there is an r) are left out.
+/// 1. Rows without a time, u or y (or r, where there is an r) are left out; of a longer record all but the last 10,000.
 /// 2. Where u moves once every so many rows only, those are the samples: the period in rows, not always a whole
 /// number, is the largest with which (nearly) all moves of u keep step.
 /// 3. Left out: rows that `automatic` says are manual; rows at the ends of u's range where u stays there; stretches in

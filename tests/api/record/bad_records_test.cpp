@@ -3,7 +3,7 @@
 
 #include <variant>
 
-#include "support.h"
+#include "tests/api/support.h"
 
 namespace tunewright::api {
 namespace {

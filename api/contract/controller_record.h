@@ -1,0 +1,33 @@
+// Today's settings from a record of a closed loop: the question and the answer of POST /v1/records/controller.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "api/contract/device/device.h"
+#include "api/contract/product/conversion.h"
+#include "api/contract/record.h"
+#include "api/describe/description.h"
+#include "engine/identification/controller_law/identify_controller.h"
+
+namespace tunewright::api {
+
+struct ControllerRecordRequest {
+    std::optional<std::string> name;
+    std::optional<Units> units;
+    std::optional<GivenRecord> record;
+    std::optional<double> sample_time;  ///< of the controller
+    std::optional<GivenDevice> implement;
+    ReadRecord read;                            ///< of `record`
+    std::optional<device::DeviceModel> device;  ///< of `implement`
+};
+const Description<ControllerRecordRequest>& controller_record_request_contract();
+
+struct ControllerRecordAnswer {
+    IdentifiedController found;
+    std::optional<SettingsAnswer> typing;  ///< in the product of the request
+    std::optional<std::string> not_typed;  ///< the reason why its product cannot have these settings
+};
+const Description<ControllerRecordAnswer>& controller_record_answer_contract();
+
+}  // namespace tunewright::api

@@ -1,0 +1,91 @@
+// Today's settings from a record, through the contract.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "api/json/json.h"
+#include "api/service.h"
+#include "tests/api/support.h"
+
+namespace tunewright::api {
+namespace {
+
+/// A PI program (Kp 1.5, Ti 18 s, every second) on 2 e^(-3s)/(20s+1), with steps of the set point and a wave of load.
+Json closed_loop(int rows = 400, double load_size = 2) {
+    Json record{{"dt", 1}, {"u", Json::array()}, {"y", Json::array()}, {"r", Json::array()}};
+    double x = 50, integral = 0, delayed[3] = {25, 25, 25};
+    for (int k = 0; k < rows; ++k) {
+        const double r = k / 90 % 2 == 0 ? 50 : 54, noise = 0.05 * std::sin(k * k * 0.7), y = x + noise, e = r - y;
+        integral += 1.5 / 18 * e;
+        const double u = 25 + 1.5 * e + integral, load = load_size * std::sin(k * 0.05);
+        record["u"].push_back(u);
+        record["y"].push_back(y);
+        record["r"].push_back(r);
+        x += (1 - std::exp(-1 / 20.0)) * (2 * (delayed[k % 3] + load) - x);
+        delayed[k % 3] = u;
+    }
+    return record;
+}
+
+Json answered(const Json& request) {
+    const Answer answer = controller_record_call(request.dump(), {});
+    EXPECT_EQ(answer.status, 200) << answer.body;
+    return Json::parse(answer.body);
+}
+
+TEST(ControllerRecord, AnswersTheSettingsThatMovedU) {
+    const Json body = answered({{"record", closed_loop()}});
+    EXPECT_EQ(schema_faults(body, "ControllerRecordAnswer"), std::vector<std::string>{});
+    const Json& found = body["identified"];
+    EXPECT_EQ(found["controller"]["form"], "ideal");
+    EXPECT_NEAR(found["controller"]["Kp"].get<double>(), 1.5, 1e-5);
+    EXPECT_NEAR(found["controller"]["Ti"].get<double>(), 18, 1e-4);
+    EXPECT_TRUE(found["b_known"].get<bool>());
+    EXPECT_TRUE(found["standard_errors"].contains("Ti"));
+    EXPECT_FALSE(body.contains("typing"));
+}
+
+TEST(ControllerRecord, AnswersThemInTheProductsForm) {
+    const Json body =
+        answered({{"record", closed_loop()}, {"implement", {{"product", "arduino_pid_v1"}, {"u_span", {0, 255}}}}});
+    EXPECT_EQ(schema_faults(body, "ControllerRecordAnswer"), std::vector<std::string>{});
+    // The library counts u from 0 to 255; its Ki is Kp/Ti per second.
+    EXPECT_NEAR(body["typing"]["settings"]["Kp"].get<double>(), 1.5, 1e-5) << body["typing"].dump();
+    EXPECT_NEAR(body["typing"]["settings"]["Ki"].get<double>(), 1.5 / 18, 1e-5);
+}
+
+TEST(ControllerRecord, RefusesARecordThatHoldsNoLaw) {
+    const Answer few = controller_record_call(Json{{"record", closed_loop(60)}}.dump(), {});
+    EXPECT_EQ(few.status, 422);
+    EXPECT_NE(few.body.find("80 are needed"), std::string::npos) << few.body;
+    Json test = closed_loop();
+    for (std::size_t k = 0; k < test["u"].size(); ++k) test["u"][k] = k / 100 % 2 == 0 ? 20 : 25;
+    EXPECT_EQ(controller_record_call(Json{{"record", test}}.dump(), {}).status, 422) << "an open-loop test";
+    EXPECT_EQ(controller_record_call(Json{{"record", closed_loop()}, {"sample_time", 0}}.dump(), {}).status, 422);
+}
+
+TEST(ControllerRecord, IsTheBaselineOfADesign) {
+    const Json tune = Json::array({{{"method", "simc"}}});
+    const Answer answer =
+        design_call(Json{{"record", closed_loop(400, 0)}, {"tune", tune}, {"baseline", "from-record"}}.dump(), {});
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    const Json entry = Json::parse(answer.body)["controllers"].back();
+    EXPECT_EQ(entry["method"], "baseline");
+    EXPECT_NEAR(entry["controller"]["Kp"].get<double>(), 1.5, 1e-5);
+
+    const Answer without = design_call(
+        Json{{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 20}, {"L", 3}}}, {"baseline", "from-record"}}.dump(), {});
+    EXPECT_EQ(without.status, 422);
+    EXPECT_NE(without.body.find("\"/baseline\""), std::string::npos) << without.body;
+
+    Json open = closed_loop();
+    for (std::size_t k = 0; k < open["u"].size(); ++k) open["u"][k] = k / 100 % 2 == 0 ? 20 : 25;
+    const Answer no_law = design_call(Json{{"record", open}, {"baseline", "from-record"}}.dump(), {});
+    EXPECT_EQ(no_law.status, 422);
+    EXPECT_NE(no_law.body.find("\"/baseline\""), std::string::npos) << no_law.body;
+}
+
+}  // namespace
+}  // namespace tunewright::api

@@ -17,6 +17,7 @@ namespace {
 struct LawLimits {
     int min_increments = 80;           ///< fewer give errors of Kp and Ti that are too small
     double min_explained = 0.5;        ///< loops whose u has other inputs too explain less, those that sample y do not
+    double min_b = -0.2, max_b = 1.3;  ///< beyond 0 to 1 by more than the errors of what is answered
     double max_Kp_error = 0.04;        ///< relative; of those above, one in ten is off by more than 5 %
     double max_Ti_error = 0.05;        ///< the same
     double doubtful_Kp_error = 0.02;   ///< relative; above: a warning, for 5 % are then within 2.5 deviations
@@ -268,6 +269,11 @@ Expected<IdentifiedController> identify_controller(const Record& record, const C
             "A PID law explains " + text(std::round(100 * std::max(0.0, estimate.explained()))) +
             " % of the moves of u; " + text(100 * kLimits.min_explained) +
             " % are needed. Check that u is this loop's own output and that no other signal is added to it.");
+    const double b = estimate.answer(options).pid.b;
+    if (!(b > kLimits.min_b && b < kLimits.max_b))
+        return refused("u moves with the set point " + text(b) +
+                       " times as far as with y; a PID law has a set-point weight from 0 to 1. Check that the set "
+                       "point is this loop's own.");
     if (!(estimate.Kp_error() < kLimits.max_Kp_error) || !(estimate.Ti_error() < kLimits.max_Ti_error))
         return refused("The record leaves the settings open: Kp is known to " +
                        text(std::ceil(100 * estimate.Kp_error())) + " %" +

@@ -339,7 +339,8 @@ Answer controller_record_call(std::string_view body, const RunControl&) {
         auto converted = product::to_settings(product, answer.found.pid, request.device->context, true);
         if (converted)
             answer.typing.emplace(SettingsAnswer{&product, converted->settings, converted->settings,
-                                                 converted->realised, std::move(converted->notes)});
+                                                 converted->realised, std::move(converted->notes),
+                                                 request.device->context});
         else
             answer.not_typed = converted.error().message;
     }

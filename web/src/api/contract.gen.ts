@@ -171,7 +171,7 @@ export type components = {
       ultimate?: components["schemas"]["UltimateTest"];
       identify?: components["schemas"]["Identify"];
       tune?: components["schemas"]["Method"][] | "all";
-      baseline?: components["schemas"]["Controller"] | components["schemas"]["BaselineSettings"];
+      baseline?: components["schemas"]["Controller"] | components["schemas"]["BaselineSettings"] | "from-record";
       implement?: components["schemas"]["Implement"];
       evaluate?: components["schemas"]["Evaluate"];
       uncertainty?: "auto" | "none" | "identified";

@@ -60,6 +60,7 @@ const FLOWS = {
   },
   async "a relay test"(page) {
     await page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name: "Relay test" }).click();
+    await page.getByRole("button", { name: "Simulate", exact: true }).waitFor(); // the screen is loaded when it is first opened
     const line = page.getByLabel("Model in one line");
     // The screen keeps its plant.
     if ((await line.inputValue()) !== "2 e^(-2s)/(10s+1)") {

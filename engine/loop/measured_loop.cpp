@@ -37,11 +37,10 @@ LoopGrid make_loop_grid(const MeasuredLoop& loop) {
     const auto& measured = loop.plant().omega();
     std::vector<double> base{measured.front()};
     for (std::size_t i = 1; i < measured.size(); ++i) {
-        const double ratio = measured[i] / measured[i - 1];
+        const double log_ratio = std::log(measured[i]) - std::log(measured[i - 1]);
         int parts = 1;
-        while (std::pow(ratio, 1.0 / parts) > kMaxFrequencyRatio) parts *= 2;
-        for (int k = 1; k < parts; ++k)
-            base.push_back(measured[i - 1] * std::pow(ratio, static_cast<double>(k) / parts));
+        while (log_ratio / parts > std::log(kMaxFrequencyRatio)) parts *= 2;
+        for (int k = 1; k < parts; ++k) base.push_back(measured[i - 1] * std::exp(log_ratio * k / parts));
         base.push_back(measured[i]);
     }
     return refined_grid([&](double omega) { return loop.at(omega); }, base, loop.plant().high(), kMaxStepOfS);

@@ -234,11 +234,12 @@ std::optional<Error> add_settings(Work& work) {
             {"action", "Kp is negative: the gain is entered without its sign, and the direction is set by " +
                            std::string(action.name) + ". " + std::string(action.text)});
     }
-    // A switch that keeps its initial value 0 would act in the wrong direction.
-    const double* reverse = std::get_if<double>(&action.reverse);
-    if (action.kind == Action::Kind::switched && work.pid.Kp > 0 && reverse != nullptr && *reverse != 0)
+    // A switch that keeps its initial value, 0 or false, would act in the wrong direction.
+    const bool initial = action.reverse == Value(0.0) || action.reverse == Value(false);
+    if (action.kind == Action::Kind::switched && work.pid.Kp > 0 && !initial &&
+        !std::holds_alternative<std::string>(action.reverse))
         work.notes.push_back({"action", "Kp is positive, so " + std::string(action.name) + " must be " +
-                                            text(*reverse) + ". " + std::string(action.text)});
+                                            text_of(action.reverse) + ". " + std::string(action.text)});
     return std::nullopt;
 }
 

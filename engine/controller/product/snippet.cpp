@@ -58,9 +58,16 @@ private:
         if (const Value* given = setting_named(typed_, name)) return typed_text(product_, {std::string(name), *given});
         if (!period_s_) return std::nullopt;
         if (name == "sample_time_s") return text(*period_s_, 6);
-        if (name == "sample_time_ms") return std::to_string(std::lround(1e3 * *period_s_));
-        if (name == "sample_time_us") return std::to_string(std::lround(1e6 * *period_s_));
+        if (name == "sample_time_ms") return whole(1e3 * *period_s_);
+        if (name == "sample_time_us") return whole(1e6 * *period_s_);
         return std::nullopt;
+    }
+
+    /// Empty if the program could not hold it.
+    static std::optional<std::string> whole(double period) {
+        constexpr double kMaxPeriod = 2147483647;  // 32 bits with a sign
+        if (!(period >= 0.5 && period < kMaxPeriod)) return std::nullopt;
+        return std::to_string(std::lround(period));
     }
 
     const Product& product_;

@@ -111,6 +111,9 @@ std::vector<char> law_increments(const LawSamples& s, bool with_still) {
 
 LawColumns whitened(const LawColumns& columns, const std::vector<char>& used, double theta, bool drift) {
     LawColumns out;
+    std::array<bool, kLawColumns> empty = {};
+    for (std::size_t c = 0; c < kLawColumns; ++c)
+        empty[c] = std::ranges::all_of(columns[c], [](double value) { return value == 0; });
     std::vector<double> trace, line;
     for (const LawStretch& stretch : stretches(used, drift)) {
         // w_0 before the stretch is free: its trace theta^k is taken out of every column, and the line's with it.
@@ -125,7 +128,7 @@ LawColumns whitened(const LawColumns& columns, const std::vector<char>& used, do
         for (std::size_t k = 0; k < line.size(); ++k) along += line[k] * trace[k] / norm;
         for (std::size_t k = 0; k < line.size(); ++k) line[k] -= along * trace[k], line_norm += line[k] * line[k];
         for (std::size_t c = 0; c < kLawColumns; ++c) {
-            if (std::ranges::all_of(columns[c], [](double value) { return value == 0; })) continue;
+            if (empty[c]) continue;
             std::vector<double>& v = out[c];
             const std::size_t from = v.size();
             double state = 0;

@@ -77,7 +77,11 @@ LawCovariance law_covariance(const LawSamples& s, const std::vector<char>& used,
         const std::size_t c = as_index(column);
         const double plain = square * f.inverse[c][c];
         if (!(out[c][c] < plain)) continue;
-        const double factor = std::sqrt(plain / std::max(out[c][c], std::numeric_limits<double>::min()));
+        if (!(out[c][c] > 0)) {  // by rounding
+            out[c][c] = plain;
+            continue;
+        }
+        const double factor = std::sqrt(plain / out[c][c]);
         for (std::size_t k = 0; k < kLawColumns; ++k) {
             out[c][k] *= factor;
             out[k][c] *= factor;

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/identification/closed_loop/loop_parts.h"
+#include "engine/identification/closed_loop/outside_excitation.h"
 #include "engine/identification/record/clean_record.h"
 
 namespace tunewright {
@@ -33,22 +35,42 @@ private:
     Index i_ = 0;
 };
 
+/// True if u stands still, away from its ends, over rows that hold a tenth of the error and more: with an integral it
+/// would move.
+bool held_against_error(const LoopRows& rows) {
+    constexpr Index kMinHeldRows = 30;
+    constexpr double kMaxHeldShare = 0.1;
+    const auto [low, high] = std::ranges::minmax(rows.u);
+    double all = 0, held = 0;
+    for (Index from = 0, to = 0; from < rows.size(); from = to) {
+        double error = 0;
+        for (; to < rows.size() && rows.u[to] == rows.u[from]; ++to) error += std::abs(rows.r[to] - rows.y[to]);
+        all += error;
+        if (to - from >= kMinHeldRows && rows.u[from] > low && rows.u[from] < high) held += error;
+    }
+    return held > kMaxHeldShare * all;
+}
+
 }  // namespace
 
-Expected<LoopRows> loop_rows(const Record& record) {
+Expected<RecordedLoop> recorded_loop(const Record& record) {
     const auto set_point = set_point_changes(record);
     if (set_point.empty()) return Error{ErrorKind::invalid_argument, "record/r", "The record has no set point."};
     const auto clean = clean_record(record);
     if (!clean) return clean.error();
+    const SetPoint r = set_point_of(*clean, record);
+    if (r.at_samples.empty())
+        return Error{ErrorKind::invalid_argument, "record/r", "Column r is no set point: it follows y or commands u."};
     const RecordScale& scale = clean->scale;
-    const double duration = clean->t.back(), usual = usual_spacing(*clean);
-    const int rows = static_cast<int>(std::min<double>(kMaxReplayRows, std::floor(duration / usual + 1.5)));
-    const double step = rows < kMaxReplayRows ? usual : duration / (kMaxReplayRows - 1);
-    LoopRows made{.t0 = scale.t_origin, .h = step * scale.t_scale, .u = {}, .y = {}, .r = {}};
+    const double duration = clean->t.back(), step = usual_spacing(*clean);
+    const double all = std::floor(duration / step + 1.5);
+    const int rows = static_cast<int>(std::min<double>(kMaxReplayRows, all));
+    const double start = all > rows ? duration - step * (rows - 1) : 0;
+    LoopRows made{.t0 = scale.t_origin + scale.t_scale * start, .h = step * scale.t_scale, .u = {}, .y = {}, .r = {}};
     constexpr double kSlack = 1e-6;  // of a row: nearer times are equal
     LastBefore sample, move, wanted;
     for (int k = 0; k < rows; ++k) {
-        const double t = std::min(k * step, duration), now = t + kSlack * step;
+        const double t = std::min(start + k * step, duration), now = t + kSlack * step;
         const Index i = sample.at(now, clean->t.size(), [&](Index j) { return clean->t[j]; });
         double y = clean->y[i];
         if (i + 1 < clean->t.size() && t > clean->t[i])
@@ -61,7 +83,9 @@ Expected<LoopRows> loop_rows(const Record& record) {
         made.r.push_back(
             set_point[wanted.at(at, set_point.size(), [&](Index n) { return set_point[n].first; })].second);
     }
-    return made;
+    RecordedLoop loop{.rows = std::move(made)};
+    loop.manual = switched_on(*clean, r.at_samples) || manual_stretch(*clean) || held_against_error(loop.rows);
+    return loop;
 }
 
 }  // namespace tunewright

@@ -8,6 +8,7 @@
 #include "engine/identification/record/series.h"
 #include "engine/request/identified_region.h"
 #include "engine/request/replay/loop_rows.h"
+#include "engine/tuning/device/device_loop.h"
 
 namespace tunewright {
 namespace {
@@ -27,6 +28,13 @@ struct ReplaySettings {
     double min_error_ratio = 1.5;
     /// A move back of u by a smaller share of its range is no reversal.
     double reversal_band = 0.002;
+    /// In steps of u's grid, between one and two: rounding decides about a move of exactly one.
+    double reversal_steps = 1.5;
+    /// Largest step of u's grid, relative to u's range.
+    double max_grid = 0.05;
+    /// Largest row spacing, as a multiple of the entry's longest sample time, with which Ms rises by 5 %. At twice that
+    /// time a ratio of a half was 5 % off, at seven times 23 %.
+    double max_spacing = 2;
     /// Computations per row if the controller is continuous.
     double substeps = 4;
 };
@@ -34,9 +42,10 @@ constexpr ReplaySettings kSettings;
 
 constexpr double kMeanOfNormal = 0.7979;  // sqrt(2/pi): mean magnitude over standard deviation
 
-std::vector<double> rounded(std::vector<double> values, double grid) {
+/// On the grid that passes through `origin`.
+std::vector<double> rounded(std::vector<double> values, double grid, double origin) {
     if (grid > 0)
-        for (double& value : values) value = grid * std::round(value / grid);
+        for (double& value : values) value = origin + grid * std::round((value - origin) / grid);
     return values;
 }
 
@@ -46,12 +55,12 @@ RecordReplayer::RecordReplayer(const TuningRequest& request, const IdentifiedMod
     : request_(request), model_(model) {
     record_.refused = refusal();
     if (record_.refused) return;
-    auto rows = loop_rows(*request.record);
-    if (!rows) {
-        record_.refused = ReplayRefusal::no_set_point;
+    auto loop = recorded_loop(*request.record);
+    if (!loop || loop->manual) {
+        record_.refused = loop ? ReplayRefusal::manual_rows : ReplayRefusal::no_set_point;
         return;
     }
-    rows_ = std::move(*rows);
+    rows_ = std::move(loop->rows);
     record_.from = rows_.t0;
     record_.to = rows_.t0 + rows_.h * static_cast<double>(rows_.size() - 1);
     take_limits();
@@ -96,7 +105,8 @@ void RecordReplayer::take_limits() {
         limits_.output->max = std::max(limits_.output->max, high);
     }
     u_grid_ = quantisation_step(rows_.u);
-    band_ = std::max(u_grid_, kSettings.reversal_band * (high - low));
+    if (u_grid_ > kSettings.max_grid * (high - low)) u_grid_ = 0;  // a few levels are no grid
+    band_ = std::max(kSettings.reversal_steps * u_grid_, kSettings.reversal_band * (high - low));
 }
 
 void RecordReplayer::take_plants() {
@@ -142,7 +152,7 @@ ProgramLimits RecordReplayer::limits_of(const TuningEntry& entry) const {
 
 // u is rounded as the recorded one is, since rounding adds to the travel.
 ReplayFigures RecordReplayer::figures_of(const ReplayedRows& run) const {
-    return replay_figures(rows_.h, rows_.r, run.y, rounded(run.u, u_grid_), band_);
+    return replay_figures(rows_.h, rows_.r, run.y, rounded(run.u, u_grid_, rows_.u.front()), band_);
 }
 
 ReplayTrace RecordReplayer::trace_of(const std::vector<double>& y, const std::vector<double>& u) const {
@@ -154,6 +164,12 @@ ReplayTrace RecordReplayer::trace_of(const std::vector<double>& y, const std::ve
     return trace;
 }
 
+// True if the rows are too far apart for the controller, which sees y only in them.
+bool RecordReplayer::too_coarse(const TuningEntry& entry) const {
+    const auto& longest = entry.longest_sample_time;
+    return longest && *longest && rows_.h > kSettings.max_spacing * **longest;
+}
+
 std::optional<ReplayedEntry> RecordReplayer::of(const TuningEntry& entry) const {
     if (record_.refused || !entry.evaluation) return std::nullopt;
     const auto refused = [](ReplayRefusal why) {
@@ -163,6 +179,11 @@ std::optional<ReplayedEntry> RecordReplayer::of(const TuningEntry& entry) const 
     };
     const auto law = law_of(entry);
     if (!law) return refused(ReplayRefusal::no_law);
+    if (law->Ts < rows_.h && too_coarse(entry)) return refused(ReplayRefusal::coarse_rows);
+    // The law at its own sample time, or continuous.
+    const SampledPid exact = entry.on_device && request_.device->sampled() ? *law : SampledPid{.gains = law->gains};
+    if (!std::ranges::all_of(plants_, [&](const LinearPlant& plant) { return device::is_stable(plant, exact); }))
+        return refused(ReplayRefusal::unstable);
     const ProgramLimits limits = limits_of(entry);
     const auto run_on = [&](const LinearPlant& plant) { return replay(plant, *law, limits, rows_); };
 

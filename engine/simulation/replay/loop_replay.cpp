@@ -13,7 +13,7 @@ using Index = std::size_t;
 
 constexpr double kMaxEscape = 1e3;          // ranges of the recorded y and r
 constexpr double kInstantTolerance = 1e-9;  // of a row: nearer instants are one
-constexpr double kMaxSubsteps = 1000;       // of a row
+constexpr double kMaxSubsteps = 50;         // of a row: y is a straight line in it
 
 /// x' = A x + B (u_new - u)(t - L) from row to row; a row is cut where its input changes.
 class PlantDifference {

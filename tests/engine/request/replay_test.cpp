@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "engine/request/replay/loop_rows.h"
 #include "tests/engine/simulation/replay/replay_loop.h"
@@ -144,6 +145,69 @@ TEST_F(Replayed, RefusesWhatSaysNothingOfTheSettings) {
     EXPECT_EQ(refused(good), ReplayRefusal::no_set_point);
 }
 
+// Limits of u keep an unstable loop within bounds: it is the loop that decides, not how far y goes.
+TEST_F(Replayed, RefusesAnUnstableLoopAlsoWithinLimitsOfU) {
+    request_.evaluate.actuator = ActuatorLimits{.min = -35, .max = 65};
+    for (const double factor : {1.0, 2.0}) {
+        const auto replay =
+            RecordReplayer(request_, model_of(kTrue, 0.03)).of(entry_of({.Kp = 3.5 * factor, .Ki = 0.2, .b = 1}));
+        ASSERT_TRUE(replay);
+        EXPECT_EQ(replay->refused, ReplayRefusal::unstable) << factor;
+    }
+}
+
+// Before a controller was switched on the error is nobody's: with it the same settings would seem much better.
+TEST_F(Replayed, RefusesARecordThatBeginsInManual) {
+    constexpr std::size_t kManual = 150;
+    auto hour = hour_;
+    for (std::size_t k = 1; k < hour.r.size(); ++k) hour.r[k] += 5;
+    LoopRows loop = own_loop(kTrue, kUsed, hour, 35);
+    std::vector<double> rest;
+    for (std::size_t k = 0; k < kManual; ++k) rest.push_back(20 + 0.05 * std::sin(0.17 * static_cast<double>(k)));
+    loop.y.insert(loop.y.begin(), rest.begin(), rest.end());
+    loop.u.insert(loop.u.begin(), kManual, loop.u.front());
+    loop.r.front() = loop.r[1];
+    loop.r.insert(loop.r.begin(), kManual, loop.r.front());
+    request_.record = as_record(loop);
+    EXPECT_EQ(refused(model_of(kTrue, 0.03)), ReplayRefusal::manual_rows);
+    // The part in automatic is replayed.
+    request_.record = as_record(own_loop(kTrue, kUsed, hour, 35));
+    EXPECT_FALSE(refused(model_of(kTrue, 0.03)));
+}
+
+TEST_F(Replayed, RefusesARecordWithAPartInManual) {
+    Record& record = *request_.record;
+    for (std::size_t k = 300; k < 400; ++k) {
+        record.u[k] = record.u[300];
+        record.y[k] += 4;
+    }
+    EXPECT_EQ(refused(model_of(kTrue, 0.03)), ReplayRefusal::manual_rows);
+}
+
+// Of a long record the last rows are replayed at their own spacing: a wider one would be another loop.
+TEST(RecordedLoop, OfALongRecordTheLastRowsStayAtTheirSpacing) {
+    const auto hour = test::eventful_hour(30'000, kRow);
+    const LoopRows rows = own_loop(kTrue, kUsed, hour, 35);
+    const auto loop = recorded_loop(as_record(rows));
+    ASSERT_TRUE(loop);
+    EXPECT_FALSE(loop->manual);
+    ASSERT_EQ(loop->rows.size(), std::size_t{kMaxReplayRows});
+    EXPECT_NEAR(loop->rows.h, kRow, 1e-9);
+    EXPECT_NEAR(loop->rows.t0, 100 + 10'000 * kRow, 1e-6);
+    EXPECT_NEAR(loop->rows.y.back(), rows.y.back(), 1e-6);
+    EXPECT_NEAR(loop->rows.y.front(), rows.y[10'000], 1e-6);
+}
+
+// Between two rows a controller that is fast for the loop would act many times; its longest sample time tells.
+TEST_F(Replayed, RefusesRowsThatAreTooFarApartForTheController) {
+    TuningEntry entry = entry_of({.Kp = 0.8, .Ki = 0.016, .b = 1});
+    const RecordReplayer replayer(request_, model_of(kTrue, 0.02));
+    entry.longest_sample_time = Figure(2 * kRow);
+    EXPECT_FALSE(replayer.of(entry)->refused);
+    entry.longest_sample_time = Figure(0.4 * kRow);
+    EXPECT_EQ(replayer.of(entry)->refused, ReplayRefusal::coarse_rows);
+}
+
 TEST_F(Replayed, RefusesSettingsWhoseLoopIsUnstable) {
     const auto replay = RecordReplayer(request_, model_of(kTrue, 0.03)).of(entry_of({.Kp = 40, .Ki = 1, .b = 1}));
     ASSERT_TRUE(replay);
@@ -160,8 +224,9 @@ TEST(LoopRows, PutARecordOnEvenRows) {
         record.y.push_back(k == 25 ? none : 2 + 0.25 * k);
         record.r.push_back(k < 10 ? 4 : 6);
     }
-    const auto rows = loop_rows(record);
-    ASSERT_TRUE(rows);
+    const auto loop = recorded_loop(record);
+    ASSERT_TRUE(loop);
+    const LoopRows* rows = &loop->rows;
     ASSERT_EQ(rows->size(), 40u);
     EXPECT_NEAR(rows->h, 0.5, 1e-9);
     for (std::size_t k = 0; k < 40; ++k) {
@@ -170,7 +235,7 @@ TEST(LoopRows, PutARecordOnEvenRows) {
         EXPECT_EQ(rows->r[k], k < 10 ? 4 : 6);
     }
     record.r.clear();
-    EXPECT_FALSE(loop_rows(record));
+    EXPECT_FALSE(recorded_loop(record));
 }
 
 }  // namespace

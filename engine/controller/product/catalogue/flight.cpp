@@ -147,7 +147,7 @@ Product betaflight() {
         .id = "betaflight",
         .maker = "Betaflight",
         .name = "Rate PID",
-        .families = {"FPV", "INAV"},
+        .families = {"FPV"},
         .form = Form::parallel,
         .law = "sum = 0.032029 P e + (0.244381 I/s) e - (0.000529 D s/(Tf s + 1)) y, Tf = 1/(2 pi dterm_lpf1)",
         .gain_basis = "sum of the PID (limit 500, mixed by 1/1000) per deg/s",
@@ -186,6 +186,9 @@ Product betaflight() {
                     .sample_time_s = 0.00025,
                     .settings = {{"P", 50.0}, {"I", 82.0}, {"D", 42.0}, {"dterm_lpf1_hz", 90.0}}},
         .snippets = {{"CLI, for roll",
+                      "set simplified_pids_mode = OFF\n"
+                      "set simplified_dterm_filter = OFF\n"
+                      "set dterm_lpf1_dyn_min_hz = 0\n"
                       "set p_roll = {P}\n"
                       "set i_roll = {I}\n"
                       "set d_roll = {D}\n"

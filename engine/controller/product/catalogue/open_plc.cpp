@@ -58,7 +58,10 @@ Product openplc() {
                                  "iec_std_lib, __time_to_real"}},
         .example = of_design_a({{"KP", -1.5}, {"TR", 120.0}, {"TD", 20.0}, {"CYCLE_s", 0.25}}),
         .snippets = {{"Structured text, for the instance loop",
-                      "loop(KP := {KP}, TR := {TR}, TD := {TD}, CYCLE := T#{sample_time_ms}ms);"}},
+                      "loop.KP := {KP};\n"
+                      "loop.TR := {TR};\n"
+                      "loop.TD := {TD};\n"
+                      "loop.CYCLE := T#{sample_time_ms}ms;"}},
     };
 }
 
@@ -104,7 +107,10 @@ Product oscat() {
                      .sources = {"OSCAT CTRL_PID, source text (public copy)", "OSCAT manual, FT_PIDWL",
                                  "docs.ms-muc-docs.de, OSCAT CTRL_PID and FT_PIDWL"}},
         .example = of_design_a({{"KP", 1.5}, {"TN", 120.0}, {"TV", 20.0}}),
-        .snippets = {{"Structured text, for the instance loop", "loop(KP := {KP}, TN := {TN}, TV := {TV});"}},
+        .snippets = {{"Structured text, for the instance loop",
+                      "loop.KP := {KP};\n"
+                      "loop.TN := {TN};\n"
+                      "loop.TV := {TV};"}},
     };
 }
 

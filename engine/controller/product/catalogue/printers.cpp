@@ -161,7 +161,9 @@ Product reprapfirmware() {
                      .unverified = {"constant of 250 ms"},
                      .sources = {"Duet3D/RepRapFirmware src/Heating/FOPDT.cpp, LocalHeater.cpp, LocalHeater.h"}},
         .example = of_design_a({{"P", 3.825}, {"I", 0.031875}, {"D", 76.5}}),
-        .snippets = {{"config.g, for heater 1", "M301 H1 P{P} I{I} D{D}"}},
+        .snippets = {{"config.g, for heater 1",
+                      "M301 H1 P{P} I{I} D{D}\n"
+                      "; add I{M307_I|0} to M307 H1"}},
     };
 }
 

@@ -48,7 +48,10 @@ Product logix_pid() {
         .snippets = {{"Structured text, for the tag Loop",
                       "Loop.KP := {KP};\n"
                       "Loop.KI := {KI};\n"
-                      "Loop.KD := {KD};"}},
+                      "Loop.KD := {KD};\n"
+                      "Loop.PE := {PE=1.00:1/0};\n"
+                      "Loop.DOE := {DOE=1:1/0};\n"
+                      "Loop.CA := {CA=1:1/0};"}},
     };
 }
 

@@ -91,7 +91,8 @@ Product pid_compact() {
                       "\"PID_Compact_1\".Retain.CtrlParams.Td := {Td};\n"
                       "\"PID_Compact_1\".Retain.CtrlParams.TdFiltRatio := {TdFiltRatio};\n"
                       "\"PID_Compact_1\".Retain.CtrlParams.PWeighting := {PWeighting};\n"
-                      "\"PID_Compact_1\".Retain.CtrlParams.DWeighting := {DWeighting};"}},
+                      "\"PID_Compact_1\".Retain.CtrlParams.DWeighting := {DWeighting};\n"
+                      "\"PID_Compact_1\".Config.InvertControl := {InvertControl=true:TRUE/FALSE};"}},
     };
 }
 

@@ -114,7 +114,10 @@ Product codesys() {
                      .sources = {"content.helpme-codesys.com Util 3.5.18.0, Controller, PID",
                                  "zh.helpme-codesys.com Util, PD and PID", "5ichai.com, CODESYS PID help in Chinese"}},
         .example = of_design_a({{"KP", 1.5}, {"TN", 120.0}, {"TV", 20.0}}),
-        .snippets = {{"Structured text, for the instance loop", "loop(KP := {KP}, TN := {TN}, TV := {TV});"}},
+        .snippets = {{"Structured text, for the instance loop",
+                      "loop.KP := {KP};\n"
+                      "loop.TN := {TN};\n"
+                      "loop.TV := {TV};"}},
     };
 }
 

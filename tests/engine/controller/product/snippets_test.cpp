@@ -3,6 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <set>
+#include <utility>
+
 #include "engine/controller/product/typed.h"
 #include "tests/engine/controller/product/support.h"
 
@@ -91,6 +95,34 @@ TEST(Snippets, ServeAProportionalControllerOfEitherSign) {
                 EXPECT_THAT(lines_of(snippet.text), Not(Contains(HasSubstr("nan")))) << product.id;
             }
         }
+}
+
+/// A positive and a negative gain are pasted differently: by the sign, or by the switch of the direction.
+TEST(Snippets, OfEverySwitchedProductDifferByTheDirection) {
+    for (const Product& product : catalogue()) {
+        if (product.snippets.empty() || product.action.kind == Action::Kind::reverse_only) continue;
+        const auto heats = filled_snippets(product, settings_for(product, {.Kp = 1.5, .Ti = 120}), kContext);
+        const auto cools = filled_snippets(product, settings_for(product, {.Kp = -1.5, .Ti = 120}), kContext);
+        ASSERT_EQ(heats.size(), cools.size()) << product.id;
+        for (std::size_t i = 0; i < heats.size(); ++i) EXPECT_NE(heats[i].text, cools[i].text) << product.id;
+    }
+}
+
+/// A setting that a template leaves out is set elsewhere, for the reason given.
+TEST(Snippets, NameEverySettingThatTheyCanSet) {
+    const std::set<std::pair<std::string, std::string>> elsewhere{
+        {"marlin", "PID_K1"},                  // compiled in
+        {"ros_control_toolbox", "error_dot"},  // an argument of the call
+        {"openplc_iec_pid", "CYCLE_s"},        // by its period in milliseconds
+        {"simulink_pid_parallel", "block"},    // the block that is in the model
+    };
+    for (const Product& product : catalogue())
+        for (const Snippet& snippet : product.snippets)
+            for (const Setting& setting : product.example.settings) {
+                if (elsewhere.contains({std::string(product.id), setting.name})) continue;
+                const auto names = names_in(snippet.text);
+                EXPECT_NE(std::ranges::find(names, setting.name), names.end()) << product.id << " " << setting.name;
+            }
 }
 
 TEST(Snippets, SayTheDirection) {

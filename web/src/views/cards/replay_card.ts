@@ -51,7 +51,7 @@ export function replayCard(plots: PlotGrid): ReplayCard {
       const refused = recorded.refused?.text;
       about.textContent =
         refused ??
-        "The set points and the disturbances of the record, with the drawn controllers on the model and within the limits of u.";
+        "The set points and the disturbances of the record, with the drawn controllers on the model and within the known limits of u.";
       const replayed = drawn.filter(({ entry }) => entry.replay?.figures);
       table.hidden = Boolean(refused) || replayed.length === 0;
       if (!table.hidden) table.replaceChildren(figuresTable(recorded, replayed, units));

@@ -93,8 +93,9 @@ LawColumns law_columns(const LawSamples& s, const LawShape& shape) {
 }
 
 std::vector<char> law_increments(const LawSamples& s, bool with_still) {
-    constexpr std::size_t kMinStretch = 8;  // increments: fewer hold little beside the free start
-    constexpr double kMaxGap = 2.5;         // sample spacings: over a longer gap the integral is not known
+    constexpr std::size_t kMinStretch =
+        8;                           // increments: in a shorter stretch the free start takes most of the information
+    constexpr double kMaxGap = 2.5;  // sample spacings: over a longer gap the integral is not known
     std::vector<char> used(s.t.size(), 0);
     const auto out = [&](std::size_t j) { return s.excluded[j] || (!with_still && s.still[j]); };
     for (std::size_t j = 1; j < used.size(); ++j)

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array kThetas = {0.0, 0.4, 0.7, 0.85, 0.94, 0.98, 1.0};
 constexpr std::array kRatios = {0.06, 0.12, 0.25, 0.5, 0.8, 1.25, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 22.0, 32.0, 50.0};
-// Of the criterion: what a law with a derivative or a filter must gain beside the BIC's own penalty. Rounding and rows
+// Additional penalty of the criterion on a derivative or a filter. Rounding and rows
 // between samples make residuals that are not white, and each extra term explains a little of them.
 constexpr double kExtraPenalty = 10;
 

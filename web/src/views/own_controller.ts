@@ -148,21 +148,26 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
 
   const typeable = (): boolean => !tried && shown!.typeable;
 
-  /** Typed texts as a controller: in the product, or in the form. */
+  let typings = 0;
+
+  /** Typed texts as a controller: in the product, or in the form. Only the last ones count, and only while the same
+      entry is shown. */
   async function typeInto(texts: TypedTexts): Promise<void> {
     if (!shown) return;
-    const { request, result, index } = shown;
+    const { request, result, index, job } = shown;
+    const typing = (typings += 1);
+    const current = (): boolean => typing === typings && shown?.job.id === job.id && shown.index === index;
     const implement = implementOf(mine);
     const subject = callSubject(request, result);
     try {
       const product = implement && (await getProduct(implement.product));
       const entry = result.controllers[index]!;
-      onByHand(
-        product
-          ? await controllerInProduct(product, implement, texts, request)
-          : await controllerInForm(entry, formOf(entry, form), texts, subject!),
-      );
+      const typed = product
+        ? await controllerInProduct(product, implement, texts, request)
+        : await controllerInForm(entry, formOf(entry, form), texts, subject!);
+      if (current()) onByHand(typed);
     } catch (error) {
+      if (!current()) return;
       const listed = error instanceof ApiError ? (error.problem.errors ?? []) : [];
       answer.refuse(listed[0]?.detail ?? sentenceOf(error));
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "engine/identification/model_grade.h"
@@ -32,15 +33,26 @@ struct ReplaySettings {
     double reversal_steps = 1.5;
     /// Largest step of u's grid, relative to u's range.
     double max_grid = 0.05;
-    /// Largest row spacing, as a multiple of the entry's longest sample time, with which Ms rises by 5 %. At twice that
-    /// time a ratio of a half was 5 % off, at seven times 23 %.
-    double max_spacing = 2;
+    /// Largest row spacing, relative to the plant's pace: the controller sees y only in the rows. Hours at 0.1 gave the
+    /// figures above; at 0.3 a ratio of a half was 5 % off, at 1.05 it was 23 %.
+    double max_spacing = 0.4;
+    double lag_in_pace = 0.3;
     /// Computations per row if the controller is continuous.
     double substeps = 4;
 };
 constexpr ReplaySettings kSettings;
 
 constexpr double kMeanOfNormal = 0.7979;  // sqrt(2/pi): mean magnitude over standard deviation
+
+/// Dead time and a part of the lags: the time in which the plant responds. Infinite for a bare integrator, whose pace
+/// is the controller's.
+double pace_of(const LinearPlant& plant) {
+    double lags = 0;
+    for (const auto pole : plant.poles())
+        if (std::abs(pole) > 0) lags += 1 / std::abs(pole);
+    const double pace = plant.dead_time() + kSettings.lag_in_pace * lags;
+    return pace > 0 ? pace : std::numeric_limits<double>::infinity();
+}
 
 /// On the grid that passes through `origin`.
 std::vector<double> rounded(std::vector<double> values, double grid, double origin) {
@@ -116,6 +128,10 @@ void RecordReplayer::take_plants() {
         record_.refused = ReplayRefusal::unknown_region;
         return;
     }
+    if (rows_.h > kSettings.max_spacing * pace_of(plants_.front())) {
+        record_.refused = ReplayRefusal::coarse_rows;
+        return;
+    }
     for (const Plant& member : members_beside_nominal(*region))
         if (auto plant = LinearPlant::make(member)) plants_.push_back(std::move(*plant));
 }
@@ -164,12 +180,6 @@ ReplayTrace RecordReplayer::trace_of(const std::vector<double>& y, const std::ve
     return trace;
 }
 
-// True if the rows are too far apart for the controller, which sees y only in them.
-bool RecordReplayer::too_coarse(const TuningEntry& entry) const {
-    const auto& longest = entry.longest_sample_time;
-    return longest && *longest && rows_.h > kSettings.max_spacing * **longest;
-}
-
 std::optional<ReplayedEntry> RecordReplayer::of(const TuningEntry& entry) const {
     if (record_.refused || !entry.evaluation) return std::nullopt;
     const auto refused = [](ReplayRefusal why) {
@@ -179,7 +189,6 @@ std::optional<ReplayedEntry> RecordReplayer::of(const TuningEntry& entry) const 
     };
     const auto law = law_of(entry);
     if (!law) return refused(ReplayRefusal::no_law);
-    if (law->Ts < rows_.h && too_coarse(entry)) return refused(ReplayRefusal::coarse_rows);
     // The law at its own sample time, or continuous.
     const SampledPid exact = entry.on_device && request_.device->sampled() ? *law : SampledPid{.gains = law->gains};
     if (!std::ranges::all_of(plants_, [&](const LinearPlant& plant) { return device::is_stable(plant, exact); }))

@@ -6,8 +6,7 @@
 //    (simulation/replay/loop_replay.h). Its figures are compared with those of the recorded u and y.
 // 4. The same on every plant at the ends of the record's 95 % region and on its other structures: the least and the
 //    largest ratio of the IAE are the band.
-// 5. An entry is refused if its band is too wide, if its loop is unstable on one of these plants, or if the rows are
-//    too far apart for it.
+// 5. An entry is refused if its band is too wide or its loop is unstable on one of these plants.
 #pragma once
 
 #include <cstddef>
@@ -40,7 +39,6 @@ private:
     void choose_shown_rows();
     std::optional<SampledPid> law_of(const TuningEntry& entry) const;
     ProgramLimits limits_of(const TuningEntry& entry) const;
-    bool too_coarse(const TuningEntry& entry) const;
     ReplayFigures figures_of(const ReplayedRows& run) const;
     ReplayTrace trace_of(const std::vector<double>& y, const std::vector<double>& u) const;
 

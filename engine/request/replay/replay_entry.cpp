@@ -40,8 +40,8 @@ const char* reason_of(ReplayRefusal refusal) {
             return "The recorded error is hardly more than the noise of y, which no settings change. Send a record in "
                    "which the set point or a disturbance moves y.";
         case ReplayRefusal::coarse_rows:
-            return "The rows are too far apart for this controller: it would act several times between two of them. "
-                   "Record faster.";
+            return "The rows are too far apart for this plant: a controller would have to act between them. Record "
+                   "faster.";
         case ReplayRefusal::no_law: return "The nonlinear integral of this controller is not supported here.";
         case ReplayRefusal::unstable: return "The loop is unstable on the model or on a plant that fits the record.";
         case ReplayRefusal::wide_band:

@@ -16,12 +16,12 @@ enum class ReplayRefusal {
     no_set_point,    ///< the set point is not recorded: the error is unknown
     doubtful_model,  ///< a warning of level bad says that the model may be that of another plant
     unknown_region,  ///< the model has no standard errors, so that the error of a replay is unknown
+    coarse_rows,     ///< the rows are too far apart for the plant
     no_error,        ///< y - r is the noise of y alone, which no settings change
     // for an entry
-    no_law,       ///< a nonlinear integral
-    coarse_rows,  ///< between two rows the controller would have acted several times
-    unstable,     ///< the loop is unstable on the model or on a plant that fits the record
-    wide_band,    ///< the plants that fit the record leave the ratio open
+    no_law,     ///< a nonlinear integral
+    unstable,   ///< the loop is unstable on the model or on a plant that fits the record
+    wide_band,  ///< the plants that fit the record leave the ratio open
 };
 
 /// y and u of one run at ReplayedRecord::t, as many points as the request asks for.

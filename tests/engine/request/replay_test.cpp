@@ -198,14 +198,10 @@ TEST(RecordedLoop, OfALongRecordTheLastRowsStayAtTheirSpacing) {
     EXPECT_NEAR(loop->rows.y.front(), rows.y[10'000], 1e-6);
 }
 
-// Between two rows a controller that is fast for the loop would act many times; its longest sample time tells.
-TEST_F(Replayed, RefusesRowsThatAreTooFarApartForTheController) {
-    TuningEntry entry = entry_of({.Kp = 0.8, .Ki = 0.016, .b = 1});
-    const RecordReplayer replayer(request_, model_of(kTrue, 0.02));
-    entry.longest_sample_time = Figure(2 * kRow);
-    EXPECT_FALSE(replayer.of(entry)->refused);
-    entry.longest_sample_time = Figure(0.4 * kRow);
-    EXPECT_EQ(replayer.of(entry)->refused, ReplayRefusal::coarse_rows);
+// Between two rows of a fast plant a controller would have to act.
+TEST_F(Replayed, RefusesRowsThatAreTooFarApartForThePlant) {
+    EXPECT_EQ(refused(model_of({.K = 2, .T = 8, .L = 2}, 0.03)), ReplayRefusal::coarse_rows);
+    EXPECT_FALSE(refused(model_of({.K = 2, .T = 20, .L = 4}, 0.03)));
 }
 
 TEST_F(Replayed, RefusesSettingsWhoseLoopIsUnstable) {

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Runs every *_test.py next to it, in cli/, deploy/, products/, records/ and stores/, and in tests/docs and
-tests/clients, and prints the counts that script/test adds up.
+"""Runs every *_test.py next to it and in the folders next to it, in tests/docs and in tests/clients, and prints the
+counts that script/test adds up.
 
     tests/server/run.py [--jobs N] [NAME ...]
 
@@ -19,7 +19,7 @@ import time
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOMS = [HERE, *(HERE / room for room in ("cli", "deploy", "products", "records", "stores")), HERE.parent / "docs",
+ROOMS = [HERE, *sorted({test.parent for test in HERE.glob("*/*_test.py")}), HERE.parent / "docs",
          HERE.parent / "clients"]
 sys.path[:0] = map(str, ROOMS)
 

@@ -51,13 +51,13 @@ std::optional<Error> check_rows(const Record& r, const RecordRows& rows, const C
                          "); sort the record by time, or give only one test."};
     }
     if (n < kMinSamples) {
-        return not_identifiable("record", "The record has " + std::to_string(n) + " usable samples" +
-                                              (r.t.size() > static_cast<std::size_t>(n)
-                                                   ? " in " + std::to_string(r.t.size()) +
-                                                         " rows (the others have no y, no u or no time)"
-                                                   : std::string()) +
-                                              "; at least " + std::to_string(kMinSamples) +
-                                              " are needed, and at least 50 during the response are recommended.");
+        return not_identifiable(
+            "record", "The record has " + std::to_string(n) + " usable samples" +
+                          (r.t.size() > static_cast<std::size_t>(n)
+                               ? " in " + std::to_string(r.t.size()) + " rows (the others have no y, no u or no time)"
+                               : std::string()) +
+                          "; at least " + std::to_string(kMinSamples) +
+                          " are needed, and at least 50 during the response are recommended.");
     }
     if (rows.t.back() <= rows.t.front())
         return not_identifiable("record/t", "All samples have the same time; record the test with its time stamps.");

@@ -14,7 +14,7 @@ test("a line that is typed becomes a formula, fields and a job", async () => {
     await line.fill("");
     // Key by key: an incomplete text reports what is missing, and writes nothing to the console.
     await line.pressSequentially("2 e^(-3s)/((10s+1)(2s+1");
-    await page.getByText("A bracket is open since position").waitFor();
+    await page.getByText("A bracket is not closed; it opens at position").waitFor();
     await line.pressSequentially("))");
     await formula(page).locator("mfrac").waitFor();
     assert.equal((await formula(page).locator("math").textContent()).trim(), "P(s)=2e−3s(10s+1)(2s+1)");

@@ -1,6 +1,7 @@
 // Sections about the effect of the settings, and the search that found them.
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "api/report/figures.h"
 #include "api/report/sections.h"
@@ -12,25 +13,33 @@ struct FigureRow {
     const char *label, *place, *unit;
 };
 
-constexpr FigureRow kRobustness[] = {{"Ms", "Ms", ""},
-                                     {"Mt", "Mt", ""},
-                                     {"Gain margin", "gain_margin", ""},
-                                     {"Gain may fall to", "gain_margin_low", ""},
-                                     {"Phase margin", "phase_margin_deg", "°"},
-                                     {"Delay margin", "delay_margin", "time"},
-                                     {"Noise gain Mks", "Mks", "u/y"}};
-constexpr FigureRow kLoad[] = {{"IAE", "IAE", "y time"},
-                               {"ISE", "ISE", ""},
-                               {"ITAE", "ITAE", ""},
-                               {"Peak", "peak", "y"},
-                               {"Recovery time", "recovery_time", "time"},
-                               {"TV of u", "TV", "u"}};
-constexpr FigureRow kSetpoint[] = {{"IAE", "IAE", "y time"},
-                                   {"Overshoot", "overshoot_percent", "%"},
-                                   {"Rise time", "rise_time", "time"},
-                                   {"Settling time", "settling_time", "time"},
-                                   {"First move of u", "first_move", "u"},
-                                   {"TV of u", "TV", "u"}};
+constexpr FigureRow kRobustness[] = {{"Ms", "robustness/Ms", ""},
+                                     {"Mt", "robustness/Mt", ""},
+                                     {"Gain margin", "robustness/gain_margin", ""},
+                                     {"Gain may fall to", "robustness/gain_margin_low", ""},
+                                     {"Phase margin", "robustness/phase_margin_deg", "°"},
+                                     {"Delay margin", "robustness/delay_margin", "time"},
+                                     {"Noise gain Mks", "robustness/Mks", "u/y"}};
+constexpr FigureRow kLoad[] = {{"IAE", "performance/load/IAE", "y time"},
+                               {"ISE", "performance/load/ISE", ""},
+                               {"ITAE", "performance/load/ITAE", ""},
+                               {"Peak", "performance/load/peak", "y"},
+                               {"Recovery time", "performance/load/recovery_time", "time"},
+                               {"TV of u", "performance/load/TV", "u"}};
+constexpr FigureRow kSetpoint[] = {{"IAE", "performance/setpoint/IAE", "y time"},
+                                   {"Overshoot", "performance/setpoint/overshoot_percent", "%"},
+                                   {"Rise time", "performance/setpoint/rise_time", "time"},
+                                   {"Settling time", "performance/setpoint/settling_time", "time"},
+                                   {"First move of u", "performance/setpoint/first_move", "u"},
+                                   {"TV of u", "performance/setpoint/TV", "u"}};
+/// The figures of a change sheet.
+constexpr FigureRow kEffect[] = {{"Load step: IAE", "performance/load/IAE", "y time"},
+                                 {"Load step: peak", "performance/load/peak", "y"},
+                                 {"Load step: TV of u", "performance/load/TV", "u"},
+                                 {"Set-point step: overshoot", "performance/setpoint/overshoot_percent", "%"},
+                                 {"Ms", "robustness/Ms", ""}};
+constexpr FigureRow kReplay[] = {{"IAE", "replay/figures/IAE", "y time"},
+                                 {"Travel of u", "replay/figures/travel", "u"}};
 
 std::string unit_of(const FigureRow& row, const ReportInput& s) {
     const std::string unit = row.unit;
@@ -45,42 +54,99 @@ std::string unit_of(const FigureRow& row, const ReportInput& s) {
 /// The limit of the design on this figure, if it has one.
 JsonLocation limit_on(const FigureRow& row, const ReportInput& s) {
     const JsonLocation options = s.entry.at("options");
-    if (std::string_view(row.place) == "overshoot_percent") return options.at("setpoint").at("overshoot");
-    const bool limited =
-        std::ranges::any_of(std::array{"Ms", "Mt", "Mks"}, [&](std::string_view one) { return one == row.place; });
-    return limited && options.at(row.place).value().is_number() ? options.at(row.place) : options.at("");
+    const std::string_view place = row.place;
+    if (place.ends_with("/overshoot_percent")) return options.at("setpoint").at("overshoot");
+    const std::string_view name = place.substr(place.rfind('/') + 1);
+    const bool limited = std::ranges::any_of(std::array{"Ms", "Mt", "Mks"}, [&](auto one) { return one == name; });
+    return limited && options.at(name).value().is_number() ? options.at(name) : options.at("");
 }
 
-template <std::size_t n>
-Html figure_table(const char* caption, const FigureRow (&rows)[n], const std::string& below, const ReportInput& s) {
-    const auto places = [&](const JsonLocation& owner) {
-        return JsonLocation{owner.root, owner.pointer + "/" + below};
+/// A column of a table of figures: a loop under its heading.
+struct LoopColumn {
+    const char* head;
+    JsonLocation loop;
+
+    JsonLocation at(const FigureRow& row) const { return {loop.root, loop.pointer + "/" + row.place}; }
+    bool has(const FigureRow& row) const { return loop.root.contains(Json::json_pointer(at(row).pointer)); }
+};
+
+std::vector<LoopColumn> report_columns(const ReportInput& s) {
+    std::vector<LoopColumn> out = {{"Proposal", s.entry}};
+    if (s.entry.at("implemented").exists()) out.push_back({"Implemented", s.entry.at("implemented")});
+    if (!s.today) return out;
+    out.push_back({"Today", *s.today});
+    if (s.today->at("implemented").exists()) out.push_back({"Today, implemented", s.today->at("implemented")});
+    return out;
+}
+
+/// Today's loop and the new one, each with the user's own controller if it is known.
+std::vector<LoopColumn> effect_columns(const ReportInput& s) {
+    const auto entered = [](const JsonLocation& entry) {
+        return entry.at("implemented").at("robustness").exists() ? entry.at("implemented") : entry;
     };
-    Row heads = {"", "Proposal"};
-    std::vector<JsonLocation> columns = {places(s.entry)};
-    if (s.entry.at("implemented").exists()) {
-        heads.push_back("Implemented");
-        columns.push_back(places(s.entry.at("implemented")));
-    }
-    if (s.today) {
-        heads.push_back("Today");
-        columns.push_back(places(*s.today));
-        if (s.today->at("implemented").exists()) {
-            heads.push_back("Today, implemented");
-            columns.push_back(places(s.today->at("implemented")));
-        }
-    }
-    if (!columns.front().exists()) return {};
+    std::vector<LoopColumn> out;
+    if (s.today) out.push_back({"Today", entered(*s.today)});
+    out.push_back({"New", entered(s.entry)});
+    return out;
+}
+
+Row heads_of(const std::vector<LoopColumn>& columns) {
+    Row heads = {""};
+    for (const LoopColumn& column : columns) heads.push_back(column.head);
+    return heads;
+}
+
+/// One row for each figure that a column has.
+std::vector<Row> figure_rows(std::span<const FigureRow> rows, const std::vector<LoopColumn>& columns,
+                             const ReportInput& s) {
     std::vector<Row> out;
     for (const FigureRow& row : rows) {
-        if (!any_has(columns, row.place)) continue;
+        if (std::ranges::none_of(columns, [&](const LoopColumn& column) { return column.has(row); })) continue;
         const JsonLocation limit = limit_on(row, s);
         Row line = {with_unit(row.label, unit_of(row, s))};
         if (limit.exists()) line[0] += ", limit: " + figure(limit);
-        for (const JsonLocation& column : columns) line.push_back(figure(column.at(row.place)));
+        for (const LoopColumn& column : columns) line.push_back(figure(column.at(row)));
         out.push_back(std::move(line));
     }
-    return table(caption, heads, out);
+    return out;
+}
+
+/// Empty if `judged`, one of the columns, has none of the figures.
+Html figure_table(const char* caption, std::span<const FigureRow> rows, const std::vector<LoopColumn>& columns,
+                  const LoopColumn& judged, const ReportInput& s) {
+    if (std::ranges::none_of(rows, [&](const FigureRow& row) { return judged.has(row); })) return {};
+    return table(caption, heads_of(columns), figure_rows(rows, columns, s));
+}
+
+/// The recorded time as it was, and with each of these loops; empty if the entry has no replay.
+Html replay_table(const ReportInput& s) {
+    if (!s.entry.at("replay").at("figures").exists()) return {};
+    std::vector<LoopColumn> columns = {{"Recorded", s.result}};
+    if (s.today && s.today->at("replay").at("figures").exists()) columns.push_back({"Today", *s.today});
+    columns.push_back({"New", s.entry});
+    Row ratios = {"IAE, divided by the record's", "1"};
+    for (std::size_t i = 1; i < columns.size(); ++i) {
+        const JsonLocation replay = columns[i].loop.at("replay");
+        ratios.push_back(figure(replay.at("IAE_ratio"), 3) + " (" + figure(replay.at("IAE_ratio_low"), 3) + " to " +
+                         figure(replay.at("IAE_ratio_high"), 3) + ")");
+    }
+    std::vector<Row> rows = figure_rows(kReplay, columns, s);
+    rows.insert(rows.begin(), ratios);
+    return table("Replay of the record", heads_of(columns), rows);
+}
+
+/// Ms over all plants for which the entry is designed; empty if there is only one.
+Html worst_case(const ReportInput& s) {
+    const JsonLocation region = s.entry.at("region");
+    if (!region.at("worst_Ms").exists()) return {};
+    return element("p", Html("Over the whole uncertainty, Ms is at worst ") + figure(region.at("worst_Ms")) +
+                            "; the share of plants with a stable loop is " + figure(region.at("stable_fraction")) +
+                            ".");
+}
+
+Html instability(const ReportInput& s) {
+    if (s.entry.at("robustness").at("stable").value() != false) return {};
+    return element("p", element("strong", "The loop is unstable with these settings."));
 }
 
 Html verdict_line(const Json& finding) {
@@ -129,19 +195,28 @@ Html verdict_section(const ReportInput& s) {
     return section("Verdict", lines.empty() ? lines : element("ul", lines, {{"class", "verdict"}}));
 }
 
+Html reason_section(const ReportInput& s) {
+    const Json& findings = s.entry.at("verdict").value();
+    if (!findings.is_array() || findings.empty()) return {};
+    return section("Why", element("ul", verdict_line(findings.front()), {{"class", "verdict"}}));
+}
+
 Html figures_section(const ReportInput& s) {
-    const Html tables = figure_table("Margins", kRobustness, "robustness", s) +
-                        figure_table("Load step", kLoad, "performance/load", s) +
-                        figure_table("Set-point step", kSetpoint, "performance/setpoint", s);
-    Html more;
-    const JsonLocation stable = s.entry.at("robustness").at("stable");
-    if (stable.value() == false) more += element("p", element("strong", "The loop is unstable with these settings."));
-    const JsonLocation region = s.entry.at("region");
-    if (region.at("worst_Ms").exists())
-        more += element("p", Html("Over the whole uncertainty, Ms is at worst ") + figure(region.at("worst_Ms")) +
-                                 "; the share of plants with a stable loop is " + figure(region.at("stable_fraction")) +
-                                 ".");
-    return section("Figures", element("div", tables, {{"class", "tables"}}) + more);
+    const std::vector<LoopColumn> columns = report_columns(s);
+    const auto each = [&](const char* caption, std::span<const FigureRow> rows) {
+        return figure_table(caption, rows, columns, columns.front(), s);
+    };
+    const Html tables = each("Margins", kRobustness) + each("Load step", kLoad) + each("Set-point step", kSetpoint);
+    return section("Figures", element("div", tables, {{"class", "tables"}}) + instability(s) + worst_case(s));
+}
+
+Html effect_section(const ReportInput& s) {
+    const std::vector<LoopColumn> columns = effect_columns(s);
+    const Html tables = figure_table("On the model", kEffect, columns, columns.back(), s) + replay_table(s);
+    const Html words = instability(s) + worst_case(s);
+    if (tables.empty() && words.empty()) return {};
+    return section("Expected effect",
+                   element("div", element("div", tables + words) + effect_drawing(s), {{"class", "figures"}}));
 }
 
 Html method_section(const ReportInput& s) {

@@ -67,6 +67,21 @@ Plot response(const ReportInput& s, const char* title, const char* step, const c
     return plot;
 }
 
+/// The record as it was and the same time with the entry's controller; without traces if there is no replay.
+Plot replayed(const ReportInput& s) {
+    const JsonLocation record = s.result.at("replay"), replay = s.entry.at("replay");
+    const std::vector<double> t = numbers_at(record.at("t"));
+    Plot plot{.title = "Replay of the record: y",
+              .x_label = with_unit("t", s.time),
+              .y_label = with_unit("y", s.y),
+              .traces = {}};
+    if (t.empty() || !replay.at("y").exists()) return plot;
+    plot.traces = {{.name = "New", .line = Line::proposal, .x = t, .y = numbers_at(replay.at("y"))},
+                   {.name = "Recorded", .line = Line::today, .x = t, .y = numbers_at(record.at("y"))},
+                   {.name = "Set point", .line = Line::setpoint, .x = t, .y = numbers_at(record.at("r"))}};
+    return plot;
+}
+
 double limit_of(const ReportInput& s, const char* name) {
     const Json& value = s.entry.at("options").at(name).value();
     return value.is_number() ? value.get<double>() : 0;
@@ -166,6 +181,11 @@ Html responses_section(const ReportInput& s) {
     if (s.today && !s.today->at("responses").at("load").exists())
         note = element("p", "Today's settings have no response to draw; see the figures.");
     return section("Responses", element("div", figures, {{"class", "figures"}}) + note);
+}
+
+Html effect_drawing(const ReportInput& s) {
+    const Html replay = drawn(replayed(s));
+    return replay.empty() ? drawn(response(s, "Load step: y", "load", "y", s.y)) : replay;
 }
 
 Html robustness_section(const ReportInput& s) {

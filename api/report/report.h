@@ -1,4 +1,5 @@
-// GET /v1/jobs/{id}/report.html and `tunewright report`: one controller of a result as a page to print, sign and keep.
+// GET /v1/jobs/{id}/report.html and `tunewright report`: one controller of a result as a page to print, sign and keep;
+// GET /v1/jobs/{id}/change-sheet.html: the same on one sheet of paper, for those who enter the settings.
 //
 //   const auto page = report_html({job.result, job.request}, "", {.job = job.id, .date = "2024-05-01T12:00:00Z"});
 //   if (const auto* text = std::get_if<std::string>(&page)) ...
@@ -27,7 +28,12 @@ struct ReportWords {
 std::variant<std::string, Problem> report_html(const ResultSource& source, std::string_view index,
                                                const ReportWords& words);
 
-/// The content security policy of the report: it allows only the stylesheet inside it, by its hash.
+/// The change sheet of a controller: today's and the new settings, reason, expected effect, lines to sign and the way
+/// back. Input and problems as for report_html; also 404 for an operating range, 422 if the controller is today's.
+std::variant<std::string, Problem> change_sheet_html(const ResultSource& source, std::string_view index,
+                                                     const ReportWords& words);
+
+/// The content security policy of both pages: it allows only the stylesheet inside it, by its hash.
 std::string report_policy();
 
 }  // namespace tunewright::api

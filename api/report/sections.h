@@ -13,16 +13,26 @@
 namespace tunewright::api {
 
 Html verdict_section(const ReportInput& subject);
+/// The first finding of the entry, which has its level.
+Html reason_section(const ReportInput& subject);
 /// The title of a product, "Emerson DeltaV PID, FORM Series"; a maker whose name is part of the product's is not
 /// repeated.
 std::string product_title(const product::Product& product);
 /// The user's own controller in words, as the request names it; "" if it names none.
 std::string controller_words(const ReportInput& subject);
+/// The column of today's settings: only if they are known, or otherwise empty, to be written into.
+enum class TodayColumn { if_known, always };
 /// Today's settings and the new ones, with the ranges for which they are valid.
-Html settings_section(const ReportInput& subject);
+Html settings_section(const ReportInput& subject, TodayColumn column);
+/// How to undo the change.
+Html way_back_section(const ReportInput& subject);
 /// New and today's settings in the ideal, parallel and series forms.
 Html forms_section(const ReportInput& subject);
 Html figures_section(const ReportInput& subject);
+/// The figures of a change sheet, today's next to the new ones, with one drawing.
+Html effect_section(const ReportInput& subject);
+/// y over the recorded time if the entry has a replay, else after the load step; empty without traces.
+Html effect_drawing(const ReportInput& subject);
 /// Set-point and load step, y and u of each.
 std::vector<Plot> response_plots(const ReportInput& subject);
 Html responses_section(const ReportInput& subject);

@@ -76,6 +76,11 @@ Html forms_table(const char* caption, const std::vector<Column>& columns, const 
     return table(caption, top, rows);
 }
 
+const char* own_form(const ReportInput& s) {
+    const std::string form = text_at(s.entry.at("controller").at("form"));
+    return form == "npid" ? "Nonlinear (NPID)" : form == "parallel" ? "Parallel, as given" : "Ideal";
+}
+
 const product::Product* product_of(const ReportInput& s) {
     return product::find(text_at(s.request.at("implement").at("product")));
 }
@@ -85,12 +90,21 @@ Html typed(const JsonLocation& texts, const std::string& name) {
     return value.exists() ? element("span", text_at(value), {{"data-typed", value.pointer}}) : Html("–");
 }
 
+/// True if the new settings are known by the names of the controller's own list.
+bool has_typed(const ReportInput& s) {
+    return product_of(s) != nullptr && s.entry.at("as_entered").at("as_typed").value().is_object();
+}
+
+/// Today's settings by the names of the controller's own list, if they are known.
+std::optional<JsonLocation> entered_today(const ReportInput& s) {
+    if (!s.today || !s.today->at("as_entered").at("as_typed").exists()) return std::nullopt;
+    return s.today->at("as_entered");
+}
+
 /// Today's settings next to the new ones, by the names of the controller's own list.
-Html change_table(const product::Product& product, const ReportInput& s) {
+Html change_table(const product::Product& product, const ReportInput& s, TodayColumn column) {
     const JsonLocation entered = s.entry.at("as_entered"), texts = entered.at("as_typed");
-    if (!texts.value().is_object()) return {};
-    std::optional<JsonLocation> before;
-    if (s.today && s.today->at("as_entered").at("as_typed").exists()) before.emplace(s.today->at("as_entered"));
+    const std::optional<JsonLocation> before = entered_today(s);
     std::vector<std::string> names;
     for (const auto& [name, value] : texts.value().items()) names.push_back(name);
     if (before)
@@ -102,12 +116,26 @@ Html change_table(const product::Product& product, const ReportInput& s) {
         std::string unit = text_at(entered.at("units").at(name));
         if (unit.empty() && before) unit = text_at(before->at("units").at(name));
         Row row = {with_unit(parameter == nullptr ? name : std::string(parameter->label), unit)};
-        if (before) row.push_back(typed(before->at("as_typed"), name));
+        if (before)
+            row.push_back(typed(before->at("as_typed"), name));
+        else if (column == TodayColumn::always)
+            row.push_back("");
         row.push_back(typed(texts, name));
         rows.push_back(std::move(row));
     }
     const std::string caption = "On your controller, " + product_title(product);
-    return before ? table(caption.c_str(), {"", "Today", "New"}, rows) : table(caption.c_str(), {"", "Type in"}, rows);
+    return before || column == TodayColumn::always ? table(caption.c_str(), {"", "Today", "New"}, rows)
+                                                   : table(caption.c_str(), {"", "Type in"}, rows);
+}
+
+/// Today's settings next to the new ones in the ideal form, or in that of a nonlinear controller.
+Html ideal_table(const ReportInput& s, TodayColumn column) {
+    const bool nonlinear = text_at(s.entry.at("controller").at("form")) == "npid";
+    const bool with_today = s.today || column == TodayColumn::always;
+    std::vector<Column> columns;
+    if (with_today) columns.push_back({"Today", s.today ? s.today->at("controller") : s.result.at("")});
+    columns.push_back({with_today ? "New" : own_form(s), s.entry.at("controller")});
+    return forms_table(nonlinear ? "To enter" : "To enter, in the ideal form", columns, s);
 }
 
 Html from_to(const JsonLocation& low, const JsonLocation& high) {
@@ -139,11 +167,6 @@ Html notes_of(const JsonLocation& entry) {
     return list(sentences);
 }
 
-const char* own_form(const ReportInput& s) {
-    const std::string form = text_at(s.entry.at("controller").at("form"));
-    return form == "npid" ? "Nonlinear (NPID)" : form == "parallel" ? "Parallel, as given" : "Ideal";
-}
-
 }  // namespace
 
 std::string product_title(const product::Product& product) {
@@ -156,17 +179,19 @@ std::string controller_words(const ReportInput& s) {
     return product == nullptr ? "" : product_title(*product);
 }
 
-Html settings_section(const ReportInput& s) {
-    const product::Product* product = product_of(s);
-    Html change = product == nullptr ? Html() : change_table(*product, s);
-    if (change.empty()) {
-        std::vector<Column> columns;
-        if (s.today) columns.push_back({"Today", s.today->at("controller")});
-        columns.push_back({s.today ? "New" : own_form(s), s.entry.at("controller")});
-        const bool nonlinear = text_at(s.entry.at("controller").at("form")) == "npid";
-        change = forms_table(nonlinear ? "To enter" : "To enter, in the ideal form", columns, s);
-    }
+Html settings_section(const ReportInput& s, TodayColumn column) {
+    const Html change = has_typed(s) ? change_table(*product_of(s), s, column) : ideal_table(s, column);
     return section("Settings", element("div", change + ranges_table(s), {{"class", "tables"}}) + notes_of(s.entry));
+}
+
+Html way_back_section(const ReportInput& s) {
+    const bool known = has_typed(s) ? entered_today(s).has_value() : s.today.has_value();
+    const char* const before =
+        known ? "Compare the column Today with the controller before you change anything, and correct it by hand where "
+                "they differ. "
+              : "Today's settings are unknown: write the controller's values into the column Today before you change "
+                "anything. ";
+    return section("To go back", element("p", Html(before) + "To go back, enter the values of this column."));
 }
 
 Html forms_section(const ReportInput& s) {

@@ -61,6 +61,57 @@ TEST(Report, WhatIsNoResultIsRefused) {
     }
 }
 
+std::size_t count(std::string_view text, std::string_view part) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + part.size()))
+        ++found;
+    return found;
+}
+
+constexpr const char* kNewEntry = R"({"method": "robust", "controller": {"form": "ideal", "Kp": 2, "Ti": 10},
+    "verdict": [{"level": "good", "text": "first"}, {"level": "note", "text": "second"}], "robustness": {"Ms": 1.4},
+    "performance": {"load": {"IAE": 5}}, "replay": {"figures": {"IAE": 7, "travel": 9}, "IAE_ratio": 0.7,
+    "IAE_ratio_low": 0.6, "IAE_ratio_high": 0.8}})";
+constexpr const char* kTodaysEntry = R"({"method": "baseline", "controller": {"form": "ideal", "Kp": 1, "Ti": 20},
+    "robustness": {"Ms": 1.2}, "performance": {"load": {"IAE": 20}}})";
+
+std::variant<std::string, Problem> sheet_of(const std::string& entries, std::string_view index = "0") {
+    const std::string result = R"({"replay": {"figures": {"IAE": 10, "travel": 8}}, "controllers": [)" + entries + "]}";
+    return change_sheet_html({result}, index, {});
+}
+
+TEST(Report, AChangeSheetHasTodaysAndTheNewFigures) {
+    const std::string sheet = std::get<std::string>(sheet_of(std::string(kNewEntry) + "," + kTodaysEntry));
+    for (const char* entry : {"0", "1"})
+        for (const char* place : {"controller/Kp", "controller/Ti", "robustness/Ms", "performance/load/IAE"})
+            EXPECT_THAT(sheet, HasSubstr(std::string("data-at=\"/result/controllers/") + entry + "/" + place + "\""));
+    for (const char* place : {"replay/figures/IAE", "controllers/0/replay/figures/IAE",
+                              "controllers/0/replay/IAE_ratio", "controllers/0/replay/IAE_ratio_low",
+                              "controllers/0/replay/IAE_ratio_high", "controllers/0/replay/figures/travel"})
+        EXPECT_THAT(sheet, HasSubstr(std::string("data-at=\"/result/") + place + "\""));
+    EXPECT_THAT(sheet, HasSubstr(">first<"));
+    EXPECT_THAT(sheet, Not(HasSubstr(">second<")));
+}
+
+TEST(Report, AChangeSheetWithoutTodaysSettingsHasACellToWriteIntoForEach) {
+    constexpr std::string_view kEmpty = "<td></td>";
+    const std::string known = std::get<std::string>(sheet_of(std::string(kNewEntry) + "," + kTodaysEntry));
+    const std::string unknown = std::get<std::string>(sheet_of(kNewEntry));
+    EXPECT_EQ(count(unknown, kEmpty), count(known, kEmpty) + 2);  // Kp and Ti
+}
+
+TEST(Report, WhatChangesNothingHasNoChangeSheet) {
+    const auto status = [](const std::variant<std::string, Problem>& answer) {
+        return std::holds_alternative<Problem>(answer) ? std::get<Problem>(answer).status : 200;
+    };
+    EXPECT_EQ(status(sheet_of(std::string(kNewEntry) + "," + kTodaysEntry, "")), 200);
+    EXPECT_EQ(status(sheet_of(std::string(kNewEntry) + "," + kTodaysEntry, "1")), 422);
+    EXPECT_EQ(status(sheet_of(kTodaysEntry, "")), 422);
+    EXPECT_EQ(status(sheet_of(R"({"method": "simc", "error": {"detail": "none"}})")), 404);
+    EXPECT_EQ(status(change_sheet_html({R"({"range": {}})"}, "", {})), 404);
+    EXPECT_EQ(status(change_sheet_html({"{"}, "", {})), 400);
+}
+
 TEST(Report, ThePolicyNamesTheStylesheet) {
     EXPECT_THAT(report_policy(), testing::StartsWith("default-src 'none'; style-src 'sha256-"));
 }

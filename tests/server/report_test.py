@@ -53,14 +53,14 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(job["status"], "succeeded", job.get("error"))
         return job
 
-    def report(self, job, query=""):
-        answer = self.service.get("/v1/jobs/%s/report.html%s" % (job["id"], query), {"Accept": "text/html"})
+    def report(self, job, query="", page="report.html"):
+        answer = self.service.get("/v1/jobs/%s/%s%s" % (job["id"], page, query), {"Accept": "text/html"})
         self.assertEqual((answer.status, answer.media_type), (200, "text/html"), answer.body[:300])
         return answer
 
-    def checked(self, job, query=""):
+    def checked(self, job, query="", page="report.html"):
         """The tree of a report, after checks of its figures and its form."""
-        answer = self.report(job, query)
+        answer = self.report(job, query, page)
         text = answer.body.decode()
         checker = Checker()
         checker.feed(text)
@@ -145,6 +145,41 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(captions[0], "On your controller, Emerson DeltaV PID, FORM Standard")
         self.assertLess(text.index("Prepared by"), text.index("New settings, by the form of the controller"))
         self.assertNotIn("uncertainty &quot;", text)
+
+    def test_a_change_sheet_goes_from_todays_settings_to_the_new_ones(self):
+        implement = {"product": "emerson_deltav_standard", "y_span": [0, 200], "u_span": [0, 100], "sample_time": 0.5}
+        today = {"product": "emerson_deltav_standard", "settings": {"GAIN": 1.1, "RESET": 14}}
+        request = {"name": "TIC-101 <b>", "units": {"time": "s", "u": "%", "y": "degC"}, "plant": FOPDT,
+                   "implement": implement}
+
+        def gain_row(job):
+            tree, text, figures = self.checked(job, "", "change-sheet.html")
+            for told in ("TIC-101 &lt;b&gt;: change sheet", "Emerson DeltaV PID, FORM Standard", "Prepared by",
+                         "Entered in the controller by", job["id"], "<svg"):
+                self.assertIn(told, text)
+            row = next(row for row in tree.iter(XHTML + "tr") if (row[0].text or "").startswith("GAIN"))
+            entry = job["result"]["controllers"][0]
+            self.assertIn(entry["verdict"][0]["text"], [element.text for element in tree.iter(XHTML + "li")])
+            return ["".join(cell.itertext()) for cell in row.iter(XHTML + "td")], figures, entry
+
+        known = self.job(request | {"baseline": today})
+        row, figures, entry = gain_row(known)
+        self.assertEqual(row, ["1.10", entry["as_entered"]["as_typed"]["GAIN"]])
+        for place in ("performance/load/IAE", "performance/load/TV", "robustness/Ms"):
+            for index in (0, 1):
+                self.assertIn("/result/controllers/%d/implemented/%s" % (index, place), figures)
+        row, _, entry = gain_row(self.job(request))
+        self.assertEqual(row, ["", entry["as_entered"]["as_typed"]["GAIN"]])
+        address = "/v1/jobs/%s/change-sheet.html" % known["id"]
+        for query, status in (("?controller=0", 200), ("?controller=1", 422), ("?controller=2", 404), ("?entry=0", 422)):
+            self.assertEqual(self.service.get(address + query).status, status, query)
+        self.assertEqual(self.service.get("/v1/jobs/nothing/change-sheet.html").status, 404)
+        self.assertEqual(self.service.get(address, {"Accept": "application/json"}).status, 406)
+
+    def test_without_a_product_the_change_sheet_has_the_ideal_form(self):
+        _, _, figures = self.checked(self.job(BASE), "", "change-sheet.html")
+        for place in ("0/controller/Kp", "0/controller/Ti", "2/controller/Kp", "2/controller/Ti"):
+            self.assertIn("/result/controllers/" + place, figures)
 
     def test_the_set_point_is_drawn_and_what_was_asked_stands_beside_what_was_reached(self):
         job = self.job(BASE | {"tune": [{"method": "robust", "setpoint": {"overshoot": 5}}]})

@@ -105,6 +105,70 @@ test("the report prints on A4 and Letter, its style alone applies, and nothing i
   }
 });
 
+/** The record of a PI loop in automatic on 2/(20 s + 1) after 3 s, with one step of the set point. */
+function recordedLoop() {
+  const rows = ["t,r,y,u"];
+  const delayed = Array(6).fill(0);
+  let [x, y, integral] = [0, 0, 0];
+  for (let i = 0; i < 1200; i++) {
+    const r = i < 300 ? 10 : 12;
+    const measured = 10 + y + (((i * 7919) % 101) - 50) / 5000;
+    integral += (0.5 * (r - measured) * 0.6) / 20;
+    const u = 0.6 * (r - measured) + integral;
+    rows.push([i * 0.5, r, measured, 30 + u].map((value) => value.toFixed(5)).join(","));
+    delayed.push(u);
+    x += (0.5 * (2 * delayed.shift() - x)) / 20;
+    y = x;
+  }
+  return rows.join("\n");
+}
+
+test("a change sheet of ten parameters and a long name is one page of A4 and of Letter, with a plot", async () => {
+  const implement = { product: "emerson_deltav_standard", y_span: [0, 200], u_span: [0, 100], sample_time: 0.5 };
+  const baseline = { product: "emerson_deltav_standard", settings: { GAIN: 1.1, RESET: 14 } };
+  for (const name of ["W".repeat(100), "TIC-101 jacket temperature ".repeat(4).slice(0, 100)])
+    for (const plant of [{ plant: REQUEST.plant }, { record: { csv: recordedLoop() } }]) {
+      const job = await tuned({ name, units: REQUEST.units, ...plant, implement, baseline });
+      const opened = await openPage(tests.browser, {});
+      await opened.page.goto(`${tests.service.base}/v1/jobs/${job.id}/change-sheet.html`);
+      const replayed = Boolean(job.result.controllers[0].replay?.figures);
+      assert.equal(replayed, "record" in plant);
+      await opened.page.locator("figcaption", { hasText: replayed ? "Replay of the record: y" : "Load step: y" }).waitFor();
+      assert.equal(await overflow(opened.page), 0);
+      await opened.page.evaluate(() => {
+        const rows = document.querySelector("table tbody");
+        while (rows.children.length < 10) rows.append(rows.lastElementChild.cloneNode(true));
+      });
+      for (const format of ["A4", "Letter"])
+        assert.equal(textPieces(await opened.page.pdf({ format })).length, 1, `${format}, ${JSON.stringify(plant).slice(0, 20)}`);
+      assert.deepEqual(await opened.faults(), []);
+      await opened.close();
+    }
+});
+
+test("Design leads to the change sheet of a design, and to none of today's settings", async () => {
+  const job = await tuned(REQUEST);
+  for (const [entry, address] of [
+    [1, `v1/jobs/${job.id}/change-sheet.html?controller=1`],
+    [2, null],
+  ])
+    await tests.withPage(`#/jobs/${job.id}/design?entry=${entry}`, {}, async (page) => {
+      await page.getByRole("link", { name: "Report", exact: true }).waitFor();
+      const link = page.getByRole("link", { name: "Change sheet", exact: true });
+      assert.equal((await link.count()) ? await link.getAttribute("href") : null, address);
+    });
+});
+
+test("axe finds nothing in the change sheet", async () => {
+  const job = await tuned(REQUEST);
+  const text = await (await fetch(`${tests.service.base}/v1/jobs/${job.id}/change-sheet.html`)).text();
+  const opened = await openPage(tests.browser, { width: 390, height: 844 });
+  await opened.page.setContent(text);
+  assert.deepEqual(await accessibilityViolations(opened.page), []);
+  assert.equal(await overflow(opened.page), 0);
+  await opened.close();
+});
+
 test("a screen with a result leads to the report of the entry that it shows", async () => {
   const job = await tuned(REQUEST);
   await tests.withPage(`#/jobs/${job.id}/design?entry=1`, {}, async (page) => {

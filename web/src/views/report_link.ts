@@ -1,5 +1,5 @@
-// "Report": a job's page for printing. The address contains the entry, so that it is the same however the link is
-// opened.
+// "Report" and "Change sheet": pages of a job for printing. The address contains the entry, so that it is the same
+// however the link is opened.
 import { getText, sentenceOf } from "../api/client.ts";
 import { currentKey } from "../api/key.ts";
 import { h } from "../dom.ts";
@@ -11,21 +11,22 @@ export interface ReportLink {
   show(id: string | null, entry?: number | null): void;
 }
 
-export function reportLink(): ReportLink {
+/** `label` and `file` of the page. */
+export function reportLink(label = "Report", file = "report.html"): ReportLink {
   let address = "";
-  const element = h("a", { href: "#/", target: "_blank", hidden: true }, "Report");
+  const element = h("a", { href: "#/", target: "_blank", hidden: true }, label);
 
   /** A link carries no key: if the service requires one, the page is downloaded with it and saved. */
   async function save(): Promise<void> {
     const { text } = await getText(address);
-    download(new Blob([text], { type: "text/html" }), "report.html");
+    download(new Blob([text], { type: "text/html" }), file);
   }
 
   element.addEventListener("click", (event) => {
     if (currentKey() === null) return;
     event.preventDefault();
     void save().catch((error: unknown) => {
-      element.textContent = `Report: ${sentenceOf(error)}`;
+      element.textContent = `${label}: ${sentenceOf(error)}`;
     });
   });
 
@@ -33,9 +34,9 @@ export function reportLink(): ReportLink {
     element,
     show(id, entry = null) {
       const query = entry === null ? "" : `?controller=${entry}`;
-      address = `v1/jobs/${encodeURIComponent(id ?? "")}/report.html${query}`;
+      address = `v1/jobs/${encodeURIComponent(id ?? "")}/${file}${query}`;
       element.href = address;
-      element.textContent = "Report";
+      element.textContent = label;
       element.hidden = id === null;
     },
   };

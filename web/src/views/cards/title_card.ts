@@ -15,7 +15,7 @@ import { isOfUltimate } from "./ultimate_card.ts";
 export interface TitleCard {
   element: HTMLElement;
   heading: HTMLElement;
-  /** `entry`: the controller on the screen, if there is one; the report is about it. */
+  /** `entry`: the controller on the screen, if there is one; report and change sheet are about it. */
   show(job: Job | null, entry?: number | null): void;
   /** The request that leads to the displayed result; `own`: it is the job's own, for which there is a report. */
   setShown(shown: { path: string; request: unknown }, own: boolean): void;
@@ -30,20 +30,26 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
   const editLink = h("a", { href: "#/" }, "Change the request");
   const recordLink = h("a", { href: "#/" }, "Look at the record");
   const report = reportLink();
+  const sheet = reportLink("Change sheet", "change-sheet.html");
   const element = h(
     "section",
     { class: "card title" },
     heading,
     plantLine,
     formula,
-    h("p", { class: "actions" }, editLink, recordLink, report.element, actions, menu.element),
+    h("p", { class: "actions" }, editLink, recordLink, report.element, sheet.element, actions, menu.element),
   );
   let about: Job | null = null;
   let chosen: number | null = null;
 
-  function showOwn(): void {
-    menu.show("v1/jobs", about?.request);
-    report.show(about?.result ? about.id : null, chosen);
+  /** `own`: the displayed result is the job's. An operating range and today's settings have no change sheet. */
+  function showPages(own: boolean): void {
+    const id = own && about?.result ? about.id : null;
+    const entries = about?.result?.controllers ?? [];
+    const shown = chosen === null ? entries : entries.filter((_, index) => index === chosen);
+    const hasChange = shown.some((entry) => entry.controller && entry.method !== "baseline");
+    report.show(id, chosen);
+    sheet.show(hasChange ? id : null, chosen);
   }
 
   return {
@@ -71,11 +77,12 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       recordLink.hidden = !request?.record;
       about = job;
       chosen = entry;
-      showOwn();
+      menu.show("v1/jobs", request);
+      showPages(true);
     },
     setShown({ path, request }, own) {
       menu.show(path, request);
-      report.show(own && about?.result ? about.id : null, chosen);
+      showPages(own);
     },
   };
 }

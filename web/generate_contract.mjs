@@ -11,7 +11,7 @@ const SENT = ["IdentifyRequest", "PlantQuestion", "RangeRequest", "RelayRequest"
 
 /** Types of answers; the types to which both refer are included. */
 const ANSWERED = [
-  "Batch", "ControllerProduct", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "Health",
+  "Batch", "ControllerProduct", "ControllerRecordAnswer", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "Health",
   "IdentifyAnswer", "Job", "JobList", "MethodDescription", "PlantAnswer", "PreviewAnswer", "Problem", "RangeExample", "RangeResult",
   "RelayAnswer", "ScheduleSettingsAnswer", "SettingsAnswer", "TuningResult",
 ];

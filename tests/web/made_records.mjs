@@ -44,6 +44,26 @@ export function germanTrend() {
   ].join("\n");
 }
 
+/** A loop under a PI of a program, with moves of the set point and a load, in rows of its own sample time and with all
+    digits. */
+export function loopUnderPI({ Kp, Ti } = { Kp: 0.8, Ti: 60 }) {
+  const dt = 1;
+  const random = noise(5);
+  let sum = 0;
+  const moves = [0, 4, -2, 3, 0, 5];
+  const setpoint = (t) => moves[Math.floor(t / 100)];
+  const rows = [];
+  simulate({ K: 1.6, T: 60, L: 8, dt, count: 600 }, (t, y) => {
+    const measured = y + 0.1 * random();
+    const error = setpoint(t) - measured;
+    sum += ((Kp * dt) / Ti) * error;
+    const u = Kp * error + sum;
+    rows.push([t, 50 + setpoint(t), (50 + measured).toFixed(6), (40 + u).toFixed(6)].join(","));
+    return u + (t > 450 ? 1 : 0);
+  });
+  return ["Time [s],FIC7.SP [degC],FIC7.PV [degC],FIC7.OP [%]", ...rows].join("\n");
+}
+
 /** The temperature of a printer's hot end, and the share of full power, which steps from 0.2 to 0.5. */
 export function heaterLog() {
   const random = noise(11);

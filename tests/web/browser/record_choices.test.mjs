@@ -1,7 +1,9 @@
-// The choice of a part if a file holds more than one record: a run of several, a further measured input.
+// What else a record holds: a run of several, a further measured input, today's settings of its loop.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { browserTests, dropFile } from "../harness.mjs";
+import { accessibilityViolations, browserTests, dropFile } from "../harness.mjs";
+import { slider } from "../design_page.mjs";
+import { germanTrend, loopUnderPI } from "../made_records.mjs";
 import { candidatesShown, identified } from "../step_record.mjs";
 
 const tests = browserTests();
@@ -191,4 +193,74 @@ test("a request with two further inputs keeps both through the form, which shows
     // The door has no effect: it is left out, and a note names it.
     assert.deepEqual(result.model.disturbances.map(({ name }) => name), ["ambient"]);
   });
+});
+
+const today = (page) => page.getByRole("region", { name: /^Today's settings/ });
+
+/** Drops a record and returns to Start, where it is offered. */
+async function dropped(page, text) {
+  await page.waitForLoadState("networkidle");
+  await dropFile(page, ".drop", "trend.csv", text);
+  await page.getByRole("button", { name: "Use and tune" }).waitFor();
+  await page.goBack();
+  await today(page).getByLabel("Form").selectOption({ label: "from the record" });
+}
+
+test("the settings that moved u in the record are today's, in the form and in a product", async () => {
+  await withPage("", {}, async (page) => {
+    const sent = [];
+    page.on("request", (request) => request.url().endsWith("/v1/records/controller") && sent.push(request.url()));
+    await dropped(page, loopUnderPI());
+    const found = await today(page).getByText(/^Kp [0-9.]+/).innerText();
+    const [, Kp, Ti] = /^Kp ([0-9.]+)(?: ± [0-9.]+)?, Ti ([0-9.]+)/.exec(found).map(Number);
+    assert.ok(Math.abs(Kp / 0.8 - 1) < 0.02 && Math.abs(Ti / 60 - 1) < 0.02, found);
+    assert.equal(sent.length, 1);
+    assert.deepEqual(await accessibilityViolations(page), []);
+    await page.getByRole("button", { name: "Tune at once" }).click();
+    await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+    const { request } = await tests.jobOf(page);
+    assert.equal(request.baseline, "from-record");
+    const todays = async (name) =>
+      Number((await page.locator("table.typed tbody tr").filter({ has: page.locator("th", { hasText: name }) }).locator("td").first().innerText()));
+    assert.ok(Math.abs((await todays("Kp")) / 0.8 - 1) < 0.02, await page.locator("table.typed").innerText());
+    assert.ok(Math.abs((await todays("Ti")) / 60 - 1) < 0.02, await page.locator("table.typed").innerText());
+
+    const picker = page.getByRole("combobox", { name: "Maker and product" });
+    await picker.fill("deltav standard");
+    await page.getByRole("option", { name: "Emerson DeltaV PID, FORM Standard" }).click();
+    for (const [end, value] of [["from", "0"], ["to", "200"]]) {
+      const field = page.getByRole("group", { name: /^Measurement range/ }).getByRole("textbox", { name: end });
+      await field.fill(value);
+      await field.press("Tab");
+    }
+    const before = page.url();
+    await page.getByRole("button", { name: "Design for this controller" }).click();
+    await page.waitForURL((url) => url.href !== before);
+    await page.locator("table.typed tr", { hasText: "GAIN" }).getByText(/^1\.(6|59|61)/).waitFor();
+    const redesigned = await tests.jobOf(page);
+    assert.deepEqual([redesigned.request.baseline, redesigned.request.implement.product], ["from-record", "emerson_deltav_standard"]);
+    assert.ok(Math.abs((await todays("GAIN")) / 1.6 - 1) < 0.02, await page.locator("table.typed").innerText());
+    assert.ok(Math.abs((await todays("RESET")) / 60 - 1) < 0.02, await page.locator("table.typed").innerText());
+
+    const robustness = slider(page, "Robustness Ms");
+    await robustness.focus();
+    const [answered] = await Promise.all([
+      page.waitForResponse((response) => response.url().endsWith("/v1/design")),
+      robustness.press("ArrowRight"),
+    ]);
+    assert.equal(answered.status(), 200, await answered.text());
+    assert.ok(answered.request().postDataJSON().baseline.Kp > 0, "what was found goes along with the model");
+    assert.ok(Math.abs((await todays("GAIN")) / 1.6 - 1) < 0.02, await page.locator("table.typed").innerText());
+  });
+});
+
+test("a record that leaves the settings open takes the choice back and says why; it is tuned without them", async () => {
+  await withPage("", {}, async (page) => {
+    await dropped(page, germanTrend());
+    await today(page).getByText(/^There are no settings from the record\. The record leaves the settings open/).waitFor();
+    assert.equal(await today(page).getByLabel("Form").inputValue(), "ideal");
+    await page.getByRole("button", { name: "Tune at once" }).click();
+    await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+    assert.equal((await tests.jobOf(page)).request.baseline, undefined);
+  }, ["422"]);
 });

@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { namesOf, usualSpan } from "../../../web/src/words/record_names.ts";
-import type { Preview } from "../../../web/src/api/types.ts";
+import { isOfLoop, namesOf, usualSpan } from "../../../web/src/words/record_names.ts";
+import type { IdentifiedController, Preview } from "../../../web/src/api/types.ts";
+import { foundWords } from "../../../web/src/words/settings.ts";
 
 const preview = (columns: [heading: string, guess: string, unit: string][]): Pick<Preview, "columns"> => ({
   columns: columns.map(([heading, guess, unit]) => ({ heading, guess, unit })) as Preview["columns"],
@@ -29,4 +30,21 @@ test("only a unit or values that tell a range propose one", () => {
   assert.equal(usualSpan("", []), undefined);
   assert.equal(usualSpan("V", [0, 1]), undefined);
   assert.equal(usualSpan("°C"), undefined);
+});
+
+test("a record of a loop has a set point, a measurement and an output", () => {
+  const trend: [string, string, string][] = [["Zeit", "t", ""], ["SP", "r", ""], ["PV", "y", ""], ["OP", "u", ""]];
+  assert.ok(isOfLoop(preview(trend)));
+  for (const left of ["SP", "PV", "OP"]) assert.ok(!isOfLoop(preview(trend.filter(([heading]) => heading !== left))), left);
+});
+
+test("settings found in a record are written with their errors and remarks", () => {
+  const found = {
+    controller: { form: "ideal", Kp: 0.8, Ti: 60, Td: 1e-5 },
+    standard_errors: { Kp: 0.01, Ti: 1.5, Td: 2e-5 },
+    warnings: [{ detail: "Kp is uncertain." }],
+  } as unknown as IdentifiedController;
+  assert.equal(foundWords(found, "s"), "Kp 0.800 ± 0.010, Ti 60.0 ± 1.5 s. Kp is uncertain.");
+  assert.equal(foundWords({ ...found, warnings: [] }, ""), "Kp 0.800 ± 0.010, Ti 60.0 ± 1.5.");
+  assert.equal(foundWords({ ...found, standard_errors: {}, warnings: [] }, "min"), "Kp 0.8, Ti 60 min, Td 1.000e−5 min.");
 });

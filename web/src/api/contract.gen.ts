@@ -1208,6 +1208,26 @@ export type components = {
     IdentifyAnswer: {
       model: components["schemas"]["Model"];
     };
+    ControllerRecordAnswer: {
+      identified: components["schemas"]["IdentifiedController"];
+      typing?: components["schemas"]["SettingsAnswer"];
+      not_typed?: string;
+    };
+    IdentifiedController: {
+      controller: components["schemas"]["Controller"];
+      standard_errors: {
+        [key: string]: number | null;
+      };
+      sample_time?: number;
+      delay: number;
+      b_known: boolean;
+      explained: number;
+      rows: number;
+      manual_rows: number;
+      limited_rows: number;
+      odd_rows: number;
+      warnings: components["schemas"]["Warning"][];
+    };
     PlantQuestion: {
       units?: components["schemas"]["Units"];
       text?: components["schemas"]["TypedPlant"];
@@ -1541,6 +1561,8 @@ export type RangeNonlinearRun = components['schemas']['RangeNonlinearRun'];
 export type EvaluateAnswer = components['schemas']['EvaluateAnswer'];
 export type IdentifyRequest = components['schemas']['IdentifyRequest'];
 export type IdentifyAnswer = components['schemas']['IdentifyAnswer'];
+export type ControllerRecordAnswer = components['schemas']['ControllerRecordAnswer'];
+export type IdentifiedController = components['schemas']['IdentifiedController'];
 export type PlantQuestion = components['schemas']['PlantQuestion'];
 export type PlantAnswer = components['schemas']['PlantAnswer'];
 export type PreviewAnswer = components['schemas']['PreviewAnswer'];

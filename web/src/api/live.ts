@@ -36,13 +36,15 @@ export function callSubject(request: TuningRequest, result: Result): CallSubject
 }
 
 /** The body of POST /v1/design for a job's request: without the terms on which a job is run, and with its record's
-    model. */
+    model and settings. */
 export function designBody(request: TuningRequest, result: Result): Record<string, unknown> {
   const { timeout_s: _timeout, priority: _priority, notify: _notify, ...asked } = request;
   const model = asked.record ? sentBack(result.model) : null;
   if (!model) return asked;
-  const { record: _record, identify: _identify, ...rest } = asked;
-  return { ...rest, model };
+  const { record: _record, identify: _identify, baseline, ...rest } = asked;
+  const today = result.controllers.find((entry) => entry.method === "baseline")?.controller;
+  const found = today ? { baseline: settingsOf(today) } : {};
+  return { ...rest, ...(baseline === "from-record" ? found : baseline ? { baseline } : {}), model };
 }
 
 /** The body of POST /v1/evaluate for given controllers on the subject of the request. */

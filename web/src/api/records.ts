@@ -1,6 +1,6 @@
 // Preview of a file of a recorded test: the service reads it before anything is computed.
 import { call } from "./client.ts";
-import type { Health, Preview, RecordedTest } from "./types.ts";
+import type { Health, IdentifiedController, Preview, RecordedTest } from "./types.ts";
 
 /** The problems' pointers are those of a request with a record. */
 const previewed = (data: unknown): Preview => {
@@ -38,4 +38,10 @@ export async function previewRecord({ csv, columns, dt, time_unit, u_step, run }
   const chosen = Object.entries({ columns, dt, time_unit, u_step, run }).filter(([, value]) => value !== undefined);
   const request = { csv, ...Object.fromEntries(chosen) };
   return previewed((await call("POST", "v1/records/preview", request)).data);
+}
+
+/** Today's settings in the record of a loop in automatic; a refusal says why there are none. */
+export async function controllerInRecord(record: RecordedTest): Promise<IdentifiedController> {
+  const { data } = await call("POST", "v1/records/controller", { record });
+  return (data as { identified: IdentifiedController }).identified;
 }

@@ -20,6 +20,7 @@ export type {
   FrequencyPoint,
   Frontier,
   Health,
+  IdentifiedController,
   Implemented,
   JobList,
   JobOutline as Outline,
@@ -90,7 +91,8 @@ export interface TuningRequest extends Pick<Contract.TuningRequest, "name" | "un
   plant?: Plant;
   identify?: Record<string, unknown>;
   tune?: TuneEntry[] | string;
-  baseline?: Baseline;
+  /** "from-record": the service finds them in the record. */
+  baseline?: Baseline | "from-record";
   implement?: Implement;
   evaluate?: Partial<Contract.Evaluate> & Record<string, unknown>;
   [key: string]: unknown;

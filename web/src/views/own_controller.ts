@@ -8,7 +8,7 @@ import type { AsEntered, Controller, Entry, Job, Product, Result, SettingValue, 
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { choicesOf } from "../form/product_settings.ts";
-import { withBaseline, withImplement } from "../form/tuning_request.ts";
+import { givenBaseline, withBaseline, withImplement } from "../form/tuning_request.ts";
 import { implementOf, inUnits, mineOfRequest, named, rememberMine, sameImplement, typedBaseline } from "../my_controller.ts";
 import type { MyController } from "../my_controller.ts";
 import type { Store } from "../store.ts";
@@ -127,7 +127,8 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
 
   /** Today's settings by the product's own names: as the service wrote them, or as they were given. */
   function todaysTyped(product: Product): Record<string, SettingValue> {
-    const { baseline, implement } = shown!.request;
+    const { implement } = shown!.request;
+    const baseline = givenBaseline(shown!.request);
     const written = sameImplement(implement, implementOf(mine)) ? todayEntry()?.as_entered?.as_typed : undefined;
     return { ...written, ...(baseline?.product === product.id ? baseline.settings : {}) };
   }
@@ -212,7 +213,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
   }
 
   function showTodays(): void {
-    const baseline = shown?.request.baseline;
+    const baseline = shown && givenBaseline(shown.request);
     if (baseline?.product === undefined || baseline.product !== mine?.product) return;
     getProduct(baseline.product).then((product) => {
       today.setProduct(product);

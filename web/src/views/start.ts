@@ -14,7 +14,7 @@ import type { MyController } from "../my_controller.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { unitNames } from "../words/numbers.ts";
-import { namesOf } from "../words/record_names.ts";
+import { isOfLoop, namesOf } from "../words/record_names.ts";
 import { equationsCard } from "./cards/equations_card.ts";
 import { exampleElement } from "./cards/example_element.ts";
 import { methodsCard } from "./cards/methods_card.ts";
@@ -100,8 +100,15 @@ export function startView(store: Store, events: StartEvents): StartView {
   });
   const record = recordCard(errors, {
     onIdentify: identifyRecord,
-    onRead: (preview) => today.propose(namesOf(preview)),
-    onNew: () => (loop === null ? (loop = "record") : beginLoop("record")),
+    onRead(preview) {
+      today.propose(namesOf(preview));
+      today.offerRecord(isOfLoop(preview) ? () => record.read().record : null);
+    },
+    onNew() {
+      today.offerRecord(null);
+      if (loop === null) loop = "record";
+      else beginLoop("record");
+    },
     onTune: () => void tuneRecord(false),
     onCompare: () => void tuneRecord(true),
   });
@@ -236,6 +243,8 @@ export function startView(store: Store, events: StartEvents): StartView {
     const { request, faults } = common(all);
     // The region over which a loaded request holds its limits belongs to its record; Identify has its own choice.
     const held = "record" in subject && base.record ? { uncertainty: base["uncertainty"] } : {};
+    // Of a plant alone there is no record to find them in.
+    if (!("record" in subject) && request.baseline === "from-record") delete request.baseline;
     return { request: { ...request, ...defined({ ...held, ...subject }) }, faults };
   }
 
@@ -292,6 +301,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     loop = kindOf(request);
     status.hidden = true;
     showMine(mineOfRequest(request.implement, inUnits(store.get().mine, unitNames(request.units))));
+    today.offerRecord(request.record && request.baseline === "from-record" ? () => record.read().record : null);
     today.load(request.units, request.baseline, request.name);
     methods.load(request.tune);
     if (request.record) record.load(request.record, request.identify);

@@ -27,6 +27,10 @@ export function namesOf({ columns }: Pick<Preview, "columns">): RecordNames {
   return { u: u?.unit ?? "", y: y?.unit ?? "", tag: u && y ? sharedTag([y.heading, u.heading]) : "" };
 }
 
+/** True if it records a loop: set point, measurement and output. */
+export const isOfLoop = ({ columns }: Pick<Preview, "columns">): boolean =>
+  (["r", "y", "u"] as const).every((role) => columns.some((column) => column.guess === role));
+
 /** Percent are percent of a whole range; an output without a unit that stays between 0 and 1 is a share of it. */
 export function usualSpan(unit: string, values: readonly (number | null)[] = []): Span | undefined {
   if (unit === "%") return [0, 100];

@@ -1,6 +1,9 @@
 // Units and today's settings: both optional.
+import { sentenceOf } from "../../api/client.ts";
+import { newest } from "../../api/latest.ts";
 import { getProduct } from "../../api/products.ts";
-import type { Baseline, FieldError, Filter, SettingValue, Units } from "../../api/types.ts";
+import { controllerInRecord } from "../../api/records.ts";
+import type { Baseline, FieldError, Filter, RecordedTest, SettingValue, TuningRequest, Units } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { choiceField, textField } from "../../form/controls.ts";
 import type { FormErrors } from "../../form/errors.ts";
@@ -11,6 +14,7 @@ import { typedParts } from "../../form/typed.ts";
 import { mineOfRequest, typedBaseline } from "../../my_controller.ts";
 import type { MyController } from "../../my_controller.ts";
 import { exactText } from "../../words/numbers.ts";
+import { foundWords } from "../../words/settings.ts";
 import type { RecordNames } from "../../words/record_names.ts";
 
 export interface TodayCard {
@@ -19,11 +23,13 @@ export interface TodayCard {
   readUnits(): Units | undefined;
   /** The units that were typed since the loop began. */
   typedUnits(): Units | undefined;
-  read(): { baseline: Baseline | undefined; errors: FieldError[] };
-  load(units: Units | undefined, baseline: Baseline | undefined, name: string | undefined): void;
+  read(): { baseline: TuningRequest["baseline"]; errors: FieldError[] };
+  load(units: Units | undefined, baseline: TuningRequest["baseline"], name: string | undefined): void;
   readName(): string;
   /** Names that a file tells: written where nothing is typed. */
   propose(names: RecordNames): void;
+  /** The record in which today's settings can be found; null: there is none, or not of a loop. */
+  offerRecord(read: (() => RecordedTest) | null): void;
   /** A new loop: values that were filled in, or belonged to the previous loop, are cleared; values typed for this
       one stay. */
   beginLoop(): void;
@@ -37,6 +43,9 @@ const DEFAULT_FILTER = "derivative";
 
 /** Instead of a form: the settings as typed into the user's own controller. */
 const OWN = "own";
+
+/** Instead of a form: the settings that moved u in the record. */
+const FOUND = "from-record";
 
 /** The part of the card other than labels. */
 const BASELINE = "baseline";
@@ -77,6 +86,11 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   let mine: MyController | null = null;
   const own = productFields(errors, () => isOwn());
   own.element.hidden = true;
+  let record: (() => RecordedTest) | null = null;
+  const note = h("p", { class: "hint", role: "status", hidden: true });
+  const beginFind = newest();
+  /** The service has found them: what it refuses is not sent. */
+  let sure = false;
   // Members of a loaded request that no field shows, e.g. set-point weights.
   let rest: Record<string, unknown> = {};
   let filterType = DEFAULT_FILTER;
@@ -91,12 +105,13 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     return form.input.value === "parallel" ? ["Kp", "Ki", "Kd"] : ["Kp", "Ti", "Td"];
   }
   const isOwn = (): boolean => form.input.value === OWN;
+  const isFound = (): boolean => form.input.value === FOUND;
 
   function label(): void {
     own.element.hidden = !isOwn();
     form.element.classList.toggle("wide", isOwn());
-    for (const field of [...slots, filter]) field.element.hidden = isOwn();
-    kept.show(isOwn() ? {} : rest);
+    for (const field of [...slots, filter]) field.element.hidden = isOwn() || isFound();
+    kept.show(isOwn() || isFound() ? {} : rest);
     names().forEach((text, index) => slots[index]!.setLabel(text));
     delta.element.hidden = form.input.value !== "npid";
   }
@@ -116,14 +131,40 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
 
   /** Its own form is offered if there is a controller. */
   function setMine(next: MyController | null, settings?: Record<string, SettingValue>): void {
-    const chosen = form.input.value;
     mine = next;
-    form.input.replaceChildren(
-      ...[...FORMS, ...(next ? [[OWN, next.name] as const] : [])].map(([value, text]) => h("option", { value }, text)),
-    );
-    form.input.value = chosen === OWN && !next ? "ideal" : chosen;
-    label();
+    showForms();
     showProduct(settings);
+  }
+
+  function showForms(): void {
+    const chosen = form.input.value;
+    const own = mine ? [[OWN, mine.name] as const] : [];
+    const found = record ? [[FOUND, "from the record"] as const] : [];
+    form.input.replaceChildren(
+      ...[...FORMS, ...own, ...found].map(([value, text]) => h("option", { value }, text)),
+    );
+    form.input.value = (chosen === OWN && !mine) || (chosen === FOUND && !record) ? "ideal" : chosen;
+    label();
+  }
+
+  /** What the record holds is asked once, when it is chosen; a refusal takes the choice back. */
+  async function find(): Promise<void> {
+    const isNewest = beginFind();
+    sure = false;
+    note.hidden = !isFound();
+    if (!isFound() || !record) return;
+    note.textContent = "Looking in the record...";
+    try {
+      const found = await controllerInRecord(record());
+      if (!isNewest()) return;
+      sure = true;
+      note.textContent = foundWords(found, time.input.value.trim());
+    } catch (error) {
+      if (!isNewest()) return;
+      note.textContent = `There are no settings from the record. ${sentenceOf(error)}`;
+      form.input.value = mine ? OWN : "ideal";
+      label();
+    }
   }
 
   function readOwn(): { baseline: Baseline | undefined; errors: FieldError[] } {
@@ -133,7 +174,10 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   }
 
   label();
-  form.input.addEventListener("change", label);
+  form.input.addEventListener("change", () => {
+    label();
+    void find();
+  });
 
   const labels = { name, time, u, y };
 
@@ -144,18 +188,21 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     y.input.value = units?.y ?? "";
   }
 
-  function loadBaseline(baseline: Baseline | undefined): void {
+  function loadBaseline(loaded: TuningRequest["baseline"]): void {
+    beginFind();
+    sure = loaded === FOUND;
+    note.hidden = true;
+    const baseline = loaded === FOUND ? undefined : loaded;
     if (baseline?.product !== undefined) {
       const { product, settings, ...spans } = baseline;
-      const loaded = mineOfRequest({ product, ...spans }, mine);
       rest = {};
-      setMine(loaded, settings);
+      setMine(mineOfRequest({ product, ...spans }, mine), settings);
       form.input.value = OWN;
       return label();
     }
     own.load({});
     const known = baseline && FORMS.some(([id]) => id === baseline.form);
-    form.input.value = known ? baseline.form : mine && !baseline ? OWN : "ideal";
+    form.input.value = known ? baseline.form : loaded === FOUND && record ? FOUND : mine && !baseline ? OWN : "ideal";
     label();
     const text = (value: unknown): string => (typeof value === "number" ? exactText(value) : "");
     names().forEach((key, index) => {
@@ -177,6 +224,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     h("h2", { id: "today-title" }, "Today's settings ", h("span", { class: "optional" }, "optional")),
     h("p", { class: "hint" }, "The present settings of the controller: every proposal is compared with them."),
     h("div", { class: "fields" }, form.element, ...slots.map((slot) => slot.element), delta.element, filter.element),
+    note,
     own.element,
     kept.element,
     h("h2", {}, "Name and units ", h("span", { class: "optional" }, "optional")),
@@ -210,6 +258,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       } else setMine(next);
     },
     read() {
+      if (isFound()) return { baseline: sure ? FOUND : undefined, errors: [] };
       if (isOwn()) return readOwn();
       const typed = slots.map((slot) => slot.input.value.trim());
       // Any other field requires Kp: typed values are never ignored.
@@ -249,6 +298,12 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       for (const [part, text] of [["u", names.u], ["y", names.y], ["name", names.tag]] as const)
         if (text !== "" && labels[part].input.value.trim() === "") labels[part].input.value = text;
       onUnits();
+    },
+    offerRecord(read) {
+      record = read;
+      showForms();
+      if (isFound()) void find();
+      else if (!read) note.hidden = true;
     },
     beginLoop() {
       for (const [part, field] of Object.entries(labels)) if (!typed.has(part)) field.input.value = "";

@@ -126,7 +126,7 @@ TEST(IdentifyController, WhatHoldsNoLawIsRefused) {
 TEST(IdentifyController, HoldsTheTruthOnSimulatedLoopsOfEveryKind) {
     int answered = 0, held = 0, wrong_in_silence = 0, tried = 0;
     // The limits of the method were found on the loops 0 to 399.
-    for (int seed = 2000; seed < 2000 + long_or_quick(400, 40); ++seed) {
+    for (int seed = 2000; seed < 2000 + long_or_quick(400, 120); ++seed) {
         const SimulatedController loop = records::random_controller(seed);
         const auto made = recorded(loop, seed);
         if (std::ranges::any_of(made.record.y, [](double y) { return std::abs(y - 50) > 60; })) continue;  // unstable

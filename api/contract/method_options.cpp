@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kMaxTextLength = 100;
 
-/// Where the value of an option goes.
+/// The destination of an option's value.
 struct OptionPlace {
     MethodOptions& options;
     std::string path;  ///< "" for the object of all options

@@ -67,7 +67,7 @@ Plot response(const ReportInput& s, const char* title, const char* step, const c
     return plot;
 }
 
-/// The record as it was and the same time with the entry's controller; without traces if there is no replay.
+/// The recorded traces, and the replayed ones of the entry's controller; empty if there is no replay.
 Plot replayed(const ReportInput& s) {
     const JsonLocation record = s.result.at("replay"), replay = s.entry.at("replay");
     const std::vector<double> t = numbers_at(record.at("t"));

@@ -54,7 +54,7 @@ const ScheduleRow& leading_row(const Schedule& schedule);
 /// and b. A change of settings between two calls does not change u, so the program is bumpless at rows and between
 /// them. `law`: gives the rules and the sample time; the gains are those of the leading row. `named`: description of
 /// the input, such as "level in cm". Rows: times in seconds. Errors: those of pid_algorithm; unsupported for a velocity
-/// form, for a Kp that changes its sign, and for rows of which some have a filter and others none.
+/// form, for a Kp that changes its sign, and if some rows have a filter and others have none.
 Expected<Program> scheduled_algorithm(const Schedule& schedule, const SampledPid& law, const CodeOptions& options,
                                       const std::string& named);
 

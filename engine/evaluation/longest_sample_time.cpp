@@ -18,8 +18,8 @@ namespace tunewright {
 namespace {
 
 constexpr const char* kNone =
-    "The search did not find two sample times of which the shorter keeps Ms within 5 % and "
-    "the longer does not.";
+    "The search did not find the limit: a sample time that keeps Ms within 5 %, and a longer one "
+    "that does not.";
 
 constexpr double kFirstSample = 0.1;             // multiple of 1/omega_Ms: the start of the search
 constexpr double kShortest = 1e-3;               // of 1/omega_Ms

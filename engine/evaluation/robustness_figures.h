@@ -12,7 +12,7 @@
 
 namespace tunewright {
 
-/// Of a stable loop, from its peaks and margins on a grid of its own.
+/// Robustness of a stable loop, computed from the peaks and margins on its own grid.
 Robustness robustness_of(const AnyLoop& loop, const LoopGrid& grid);
 
 /// For an unstable loop: every figure is empty and has the reason.

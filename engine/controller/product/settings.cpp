@@ -151,7 +151,7 @@ std::optional<double> number_for(const Parameter& parameter, Work& work) {
                                   work.product.filter.kind == FilterKind::parameter && parameter.standard))
         return within_range(parameter, value, work);
     if (law_role(parameter.role)) work.beyond = parameter.name;
-    // The law does not determine it: there is no derivative, or no filter.
+    // The law does not determine this parameter, because it has no derivative or no filter.
     if (parameter.off && work.own.Tf == 0) return parameter.off;
     return number_of(parameter, {});
 }
@@ -168,7 +168,7 @@ const Option& nearest_option(const Parameter& parameter, const IdealPid& pid) {
         if (option.filter) sum += (*option.filter == FilterType::measurement_second_order) != measured;
         return sum;
     };
-    // Of two equally near options, the smaller weight of the set point.
+    // If two options are equally near, the one with the smaller set-point weight is chosen.
     const Option* best = &parameter.options.front();
     for (const Option& option : parameter.options) {
         const double difference = distance(option) - distance(*best);

@@ -15,7 +15,7 @@ struct FilledSnippet {
 };
 
 /// The product's snippets (product.h) with these settings, as they are typed, and the period of `context`, or else the
-/// block's default. A snippet of which no line remains is left out.
+/// block's default. A snippet without any line left is omitted.
 std::vector<FilledSnippet> filled_snippets(const Product& product, const Settings& typed, const Context& context);
 
 }  // namespace tunewright::product

@@ -62,7 +62,7 @@ std::vector<double> column_at_samples(const CleanRecord& clean, const Record& re
     return r;
 }
 
-/// A set point of which only the moves are known.
+/// The set point at the samples, built from its moves alone.
 std::vector<double> steps_at_samples(const std::vector<OutsideMove>& moves, const CleanRecord& record) {
     std::vector<double> w(static_cast<std::size_t>(record.samples()), 0.0);
     for (const OutsideMove& move : moves) {

@@ -112,8 +112,8 @@ Product deltav_standard() {
         .weights = {1, 0, "STRUCTURE sets both; with two degrees of freedom they are BETA and GAMMA."},
         .action = kDeltaVAction,
         .algorithm = deltav_algorithm(),
-        .traps = {"Provox settings (series, repeats per minute, minutes) of which only the units were converted made "
-                  "loops oscillate.",
+        .traps = {"Provox settings (series, repeats per minute, minutes) made loops oscillate if only their units "
+                  "were converted.",
                   "The limits of the anti-reset windup are in engineering units."},
         .evidence = deltav_evidence({"both forms, Standard as the default", "units", "range and default of ALPHA",
                                      "rule of the windup limits", "formulas from series to standard"},

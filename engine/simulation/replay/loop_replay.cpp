@@ -56,7 +56,7 @@ class ProgramClock {
 public:
     ProgramClock(SampledPid law, const ProgramLimits& limits, double h)
         : h_(h),
-          substeps_(static_cast<int>(std::clamp(std::round(h / law.Ts), 1.0, kMaxSubsteps))),
+          substeps_(static_cast<int>(std::clamp(std::ceil(h / law.Ts - kInstantTolerance), 1.0, kMaxSubsteps))),
           Ts_(law.Ts < h ? h / substeps_ : law.Ts),
           program_(with_sample_time(law, Ts_), limits) {}
 

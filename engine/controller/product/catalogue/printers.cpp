@@ -73,9 +73,11 @@ Product marlin() {
                                  "configurations with PID_K1 0.95 (several public copies)"}},
         .example = of_design_a({{"P", 3.825}, {"I", 0.031875}, {"D", 76.5}, {"PID_K1", 0.9243}}),
         .snippets = {{"G-code for the hotend",
+                      "; with PID_K1 {PID_K1} in Configuration.h\n"
                       "M301 P{P} I{I} D{D}\n"
                       "M500"},
                      {"G-code for the bed",
+                      "; with PID_K1 {PID_K1} in Configuration.h\n"
                       "M304 P{P} I{I} D{D}\n"
                       "M500"}},
     };

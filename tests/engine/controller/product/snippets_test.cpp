@@ -111,7 +111,6 @@ TEST(Snippets, OfEverySwitchedProductDifferByTheDirection) {
 /// A setting that a template leaves out is set elsewhere, for the reason given.
 TEST(Snippets, NameEverySettingThatTheyCanSet) {
     const std::set<std::pair<std::string, std::string>> elsewhere{
-        {"marlin", "PID_K1"},                  // compiled in
         {"ros_control_toolbox", "error_dot"},  // an argument of the call
         {"openplc_iec_pid", "CYCLE_s"},        // by its period in milliseconds
         {"simulink_pid_parallel", "block"},    // the block that is in the model

@@ -16,7 +16,7 @@ struct FieldError {
     std::string detail;   ///< value, rule, cure
 };
 
-/// Rows of a record as read, which show why it determines no model.
+/// Rows of a record as read, which show why no model can be identified from it.
 struct RecordSamples {
     std::size_t samples = 0;  ///< of the whole record
     std::vector<double> t, u, y;

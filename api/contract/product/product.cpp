@@ -244,7 +244,7 @@ const Description<product::Algorithm>& algorithm_contract() {
                 "position or velocity.")
             .flag(
                 "published", [](const Algorithm& x) { return x.published; },
-                "false: the rules could not be read and are assumed.")
+                "false: the rules are not documented and are therefore assumed.")
             .number(
                 "sample_time", [](const Algorithm& x) { return x.sample_time_s; }, "Default; null: none.", "s")
             .flag(

@@ -24,7 +24,7 @@
 //
 // The set point's filter by backward Euler: r_f,k = (T r_f,k-1 + Ts r_k)/(T + Ts) takes the place of r_k. A velocity
 // algorithm adds the increments of the same sum to its last output: within limits the output is the same. Sources:
-// Astrom and Wittenmark, Computer-Controlled Systems (3rd ed. 1997), section 8.5; Astrom and Hagglund, Advanced PID
+// Åström and Wittenmark, Computer-Controlled Systems (3rd ed. 1997), section 8.5; Åström and Hägglund, Advanced PID
 // Control (2006), section 13.3. Slope and four points: the programs that use them (product/).
 #pragma once
 

@@ -37,7 +37,7 @@ constexpr double kMinFitPercentOfSmallError = 99;  ///< per cent: with so good a
                                                    ///< is possible
 constexpr double kMinDivisor = 1e-300;             ///< keeps a division by a value near 0 finite
 
-/// The sum of squares that filters of the set point explain of a signal about its mean.
+/// The part of the signal's sum of squares about its mean that filtered set points explain.
 double by_set_point(const std::vector<double>& signal, const SetPointPart& part) {
     const auto n = static_cast<Eigen::Index>(signal.size());
     Eigen::MatrixXd columns(n, static_cast<Eigen::Index>(part.filtered.size()));

@@ -242,7 +242,7 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
     return p;
 }
 
-/// The covariance of least squares under noise that is not white: (J'J)^-1 J'RJ (J'J)^-1 (Soderstrom and Stoica 1989,
+/// The covariance of least squares under noise that is not white: (J'J)^-1 J'RJ (J'J)^-1 (Söderström and Stoica 1989,
 /// section 4.2). The residual may come from slow noise or from a slowly varying load: with `load` the larger
 /// uncertainty of the gain counts.
 Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& left, const Fit& whole,

@@ -5,7 +5,7 @@
 //   Phi = e^(A Ts),  Gamma0 = psi(Ts - delta) B,  Gamma1 = e^(A (Ts - delta)) psi(delta) B,  psi(h) = int_0^h e^(A s)
 //   ds.
 //
-// The program reads y_k just before its output changes, so no output depends on itself. Source: Astrom and Wittenmark,
+// The program reads y_k just before its output changes, so no output depends on itself. Source: Åström and Wittenmark,
 // Computer-Controlled Systems (3rd ed. 1997), section 2.3 (fractional dead times).
 #pragma once
 

@@ -164,9 +164,9 @@ OptionalFinding noise(const VerdictInput& c) {
     }
     if (!r.Mks || !(Kp > 0) || *r.Mks < kMinNoisyMksOverKp * Kp || !noise_gain_peaks_beyond(c)) return {};
     FindingBuilder draft("noise-gain", Level::warning);
-    draft.say("Measurement noise reaches the controller output amplified up to ")
+    draft.say("The controller amplifies measurement noise up to ")
         .number("ratio", *r.Mks / Kp)
-        .say(" times as much as by the proportional gain (Mks ")
+        .say(" times as much as its proportional gain does (Mks ")
         .number("Mks", *r.Mks, quotient_unit(labels.u, labels.y))
         .say(").");
     if (const auto pid = to_ideal(c.evaluation.controller); pid && pid->filter.type != FilterType::none)

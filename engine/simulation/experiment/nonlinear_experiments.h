@@ -29,7 +29,7 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
 struct NonlinearRelayTest {
     RelayRecord record;
     double Pu = 0,
-           Ku = 0;  ///< of the last period; Ku = 4 d/(pi sqrt(a^2 - hysteresis^2)) (Astrom & Hagglund 1984), > 0
+           Ku = 0;  ///< of the last period; Ku = 4 d/(pi sqrt(a^2 - hysteresis^2)) (Åström & Hägglund 1984), > 0
     bool reversed = false;  ///< the relay acts on -y: the plant's gain is negative
 };
 Expected<NonlinearRelayTest> simulate_relay_test(const NonlinearSystem& system, double amplitude, double hysteresis,

@@ -43,7 +43,7 @@ struct Piece {
     double from = 0;                     // start within the period
     std::vector<HeldStep> whole, probe;  // the latter up to kProbeShare of it
     bool arrived;                        // u_{k-d} drives the plant here; before it u_{k-d-1}
-    bool given;  // true: the output is u_{k-o}, o whole samples of the computation delay; false: u_{k-o-1}
+    bool given;  // true: the output is u_{k-o}, with o whole samples of computation delay; false: it is u_{k-o-1}
 };
 
 class SampledRun {
@@ -204,7 +204,7 @@ void SampledRun::note(double t) {
 
 StepResponse SampledRun::result() {
     response_.settles = false;
-    // At least one period, so that a response that is stopped at once has a beginning.
+    // Takes at least one period, so that a response that is stopped at once has a first point.
     for (int k = 0; k < options_.max_samples && (k == 0 || !options_.stop.stop_requested()); ++k) {
         sample(k);
         run_period(k);

@@ -81,7 +81,7 @@ std::optional<OptionValue> as_given(const M& member) {
 
 }  // namespace detail
 
-/// Described options whatever struct they fill: what OptionSet offers for each struct, compiled once for all.
+/// The part of OptionSet that does not depend on the type of the struct, so that it is compiled once.
 class OptionList {
 public:
     const std::vector<OptionDescription>& descriptions() const { return descriptions_; }
@@ -273,7 +273,7 @@ public:
         return *this;
     }
 
-    /// From each option of these names follows `other`, which is then not given.
+    /// Each of these options determines `other`; a request must not give both.
     OptionSet& in_place_of(std::string_view other, std::initializer_list<std::string_view> names) {
         for (const std::string_view name : names) list_.described(name).in_place_of = other;
         return *this;

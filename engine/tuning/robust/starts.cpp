@@ -28,7 +28,7 @@ void consider(Candidate& best, const DesignProblem& problem, const ScanPoint& po
     if (cost < best.log_cost) best = {point.x, cost, true};
 }
 
-/// The least integrated error Ti/Kp needs only sweeps, and is often close to the optimum (Garpinger and Hagglund 2008;
+/// The least integrated error Ti/Kp needs only sweeps, and is often close to the optimum (Garpinger and Hägglund 2008;
 /// Hast et al. 2013).
 ScanPoint min_integrated_error(const Sweep& sweep, DesignProblem problem, const ScanPoint& start) {
     problem.objective = Objective::load_ie;

@@ -44,7 +44,7 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
   const none = h("p", { class: "finds none", hidden: true });
   const element = h("div", { class: "combobox" }, field.element, count);
   list.hidden = true;
-  // Losing the focus would close the list; it stays in the field, and the click then takes the option.
+  // Keeps the focus in the field: losing it would close the list before the click selects the option.
   list.addEventListener("mousedown", (event) => event.preventDefault());
   // The list hangs below the field, above its hint.
   input.after(h("div", { class: "hanger" }, list, none));

@@ -50,7 +50,7 @@ public:
     /// first.
     std::vector<ActivePeak> peaks(const DesignPoint& x, double threshold) const;
 
-    /// The gaps left by the union of all forbidden intervals of |Kp| for given Ti, Td (Garpinger and Hagglund 2008, Eq.
+    /// The gaps left by the union of all forbidden intervals of |Kp| for given Ti, Td (Garpinger and Hägglund 2008, Eq.
     /// 6, for every circle and every plant at once), in ascending order.
     std::vector<GainGap> gain_gaps(double Ti, double Td) const;
 

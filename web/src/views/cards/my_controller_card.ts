@@ -23,8 +23,7 @@ const findForms = (typed: string): Choice[] =>
 
 export interface MyControllerCard {
   element: HTMLElement;
-  /** With forms: the parts that stand elsewhere in the card of the settings. What is missing, and `below`; and the
-      folded ranges. */
+  /** With `forms` the answer card places these parts: `facts` (what is missing) with `below`, and the folded ranges. */
   notes: HTMLElement[];
   facts: HTMLElement;
   setProducts(products: ProductSummary[]): void;

@@ -21,7 +21,7 @@ struct RecordSamples {
     std::size_t samples = 0;  ///< of the whole record
     std::vector<double> t, u, y;
     std::vector<double> r = {};           ///< empty: the record has none
-    std::vector<double> move_times = {};  ///< of u (record_kind.h); empty: it does not move, or cannot be told
+    std::vector<double> move_times = {};  ///< of u (record_kind.h); empty: u does not move, or the times are unknown
 };
 
 /// Options of the method with which the request is feasible; a program can send it again with them.

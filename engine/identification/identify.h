@@ -31,9 +31,9 @@ struct Candidate {
     double criterion = 0;    ///< information criterion, smaller is better
     std::map<std::string, double> standard_errors;  ///< K, L and T, or T1, T2, or T, zeta, or a1, a2, b (sopdt_zero)
     std::vector<double> y_model;                    ///< its free run at the times of IdentifiedModel::fit
-    bool much_worse = false;                     ///< the best candidate fits better by more than 3 points of
-                                                 ///< fit_percent
-    std::vector<std::string> undetermined = {};  ///< times that the record does not determine, as named above
+    bool much_worse = false;                        ///< the best candidate fits better by more than 3 points of
+                                                    ///< fit_percent
+    std::vector<std::string> undetermined = {};     ///< times that the record does not determine, as named above
 };
 
 /// Covariance of the chosen plant's parameters; rows and columns in the order of `names`.

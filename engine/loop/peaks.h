@@ -25,7 +25,7 @@ Peaks find_peaks(const AnyLoop& loop, const LoopGrid& grid);
 /// The peak of |S| alone, at a third of the cost.
 Peak find_sensitivity_peak(const AnyLoop& loop, const LoopGrid& grid);
 
-/// The grid, finer where all of |S| - 1 is small and its maximum as flat. `enough_below`: as in Refinement.
+/// The grid, refined if |S| - 1 is small everywhere, so that its maximum is flat. `enough_below`: as in Refinement.
 LoopGrid refined_at_low_peak(const AnyLoop& loop, LoopGrid grid, double enough_below = 0);
 
 /// A grid that is fine enough for `find_peaks` even if all of |S| - 1 is small.

@@ -54,7 +54,7 @@ struct SampledPid {
     bool trapezoidal_filter = false;  ///< trapezoidal filter of the measurement
 };
 
-/// True if filter of the measurement and derivative are computed together, by the trapezoidal rule.
+/// True if the measurement's filter and the derivative are computed together, by the trapezoidal rule.
 inline bool whole_by_trapezoids(const SampledPid& law) {
     const FilterType type = law.gains.filter.type;
     return law.trapezoidal_filter &&

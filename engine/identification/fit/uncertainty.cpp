@@ -462,7 +462,7 @@ std::optional<PlantShape> shape_of(const CleanRecord& r, const Fit& fit, const P
     return whole ? std::optional(found) : std::nullopt;
 }
 
-/// The sum of squares that a plant leaves, what else moved y fitted anew.
+/// The residual sum of squares of a plant, with everything else that moved y fitted again.
 class Misfit {
 public:
     Misfit(const CleanRecord& record, const Fit& fit) : fit_(fit), stride_(std::max(1, record.samples() / kMaxRows)) {

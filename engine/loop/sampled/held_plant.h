@@ -26,7 +26,7 @@ struct UnitCircle {
     std::complex<double> minus_one;       ///< z - 1
 };
 
-/// Largest dead time in sample times: longer ones are no practical loop, and their cost would be unbounded.
+/// Largest dead time in sample times: longer ones do not occur in practice, and their cost would be unbounded.
 inline constexpr int kMaxDelaySamples = 100'000;
 
 /// An error at implement/sample_time if dead time and computation delay together are longer than that.

@@ -25,7 +25,7 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
 /// From the operating point until periods and swings repeat to 1e-6, at least six: some thousand rows at equal
 /// distances and at every switch. The relay switches at the time of crossing; amplitude and hysteresis are deviations
 /// (relay.h). Errors: unsupported if there is no oscillation (without dead time a hysteresis is needed; if y reverses
-/// at once at it there is no Ku) or the states leave the model's domain; cancelled.
+/// at once at it there is no Ku) or if the states leave the model's domain; cancelled.
 struct NonlinearRelayTest {
     RelayRecord record;
     double Pu = 0,

@@ -21,12 +21,13 @@ using Index = std::size_t;
 
 constexpr int kMaxHalvings = 12;            // of a piece, before a node is added without a further check
 constexpr Index kMaxNodes = 1000000;        // beyond it no piece is halved any more
-constexpr double kProbeShare = 0.309;       // of a piece: where swings that the middle meets at the same place are not
+constexpr double kProbeShare = 0.309;       // of a piece: a second check at this point notices oscillations of which
+                                            // the midpoint shows nothing
 constexpr double kInstantTolerance = 1e-9;  // of a sample: closer times are equal
 constexpr int kRestSamples = 10;            // in addition to the dead time: the least time that a response must have
                                             // rested
 
-/// Where the loop rests without the limits of the program.
+/// The rest of the loop without the limits of the program.
 SteadyState rest_of(const LinearPlant& plant, const ParallelPid& gains, const StepInputs& in) {
     const double gain = plant.low_frequency_gain();
     const int integrators = plant.integrators();

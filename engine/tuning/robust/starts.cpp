@@ -109,7 +109,7 @@ bool is_open(const GainGap& gap) {
     return std::isfinite(gap.upper) && gap.upper > gap.lower * (1 + kRelativeInset) && gap.stable != false;
 }
 
-/// Whether the loop is verified as stable between a gap's ends; empty: there is no design.
+/// True if the loop is verified as stable between a gap's ends; empty: there is no design.
 std::optional<bool> usable(const DesignProblem& problem, const GainGap& gap, double Ti, double Td, Stability wanted) {
     if (!is_open(gap)) return std::nullopt;
     if (gap.verified || (wanted == Stability::inferred && gap.stable)) return gap.verified;

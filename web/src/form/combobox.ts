@@ -17,7 +17,7 @@ export interface Combobox {
   field: Field<HTMLInputElement>;
   /** Shows a choice without reporting it; null empties the field. */
   set(choice: Choice | null): void;
-  /** The typed text that is no item and stays in the field because nothing is chosen; else "". */
+  /** The typed text that is not an item and stays in the field because nothing is chosen; else "". */
   unmatched(): string;
   /** The list has changed: searched again if it is open. */
   refresh(): void;
@@ -28,7 +28,7 @@ export interface ComboboxOptions extends ControlOptions {
   find(typed: string): Choice[];
   /** null: the field was emptied. */
   onChoose(choice: Choice | null): void;
-  /** The field was left without a choice: it is empty, or has a text that is no item. */
+  /** The field was left without a choice: it is empty, or has a text that is not an item. */
   onLeft?(): void;
 }
 

@@ -4,7 +4,7 @@
 namespace tunewright::product {
 namespace {
 
-/// Proportional band in units of the measurement: the deviation that asks for the whole output.
+/// Proportional band in units of the measurement: the control error at which the output moves by its whole range.
 constexpr Term kBandInUnits{.Kp = -1, .Su = 1};
 constexpr std::string_view kBandBasis = "proportional band, in the unit of the measurement";
 constexpr double kWholeSecond = 1;

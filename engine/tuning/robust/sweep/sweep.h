@@ -31,7 +31,7 @@ struct ActivePeak {
 /// Gains that no frequency forbids; upper is infinite for the last gap.
 struct GainGap {
     double lower = 0, upper = 0;
-    /// Whether the loop is stable inside on every plant, inferred from the encirclements of -1 on the grid. Empty: the
+    /// True if the loop is stable inside on every plant, inferred from the encirclements of -1 on the grid. Empty: the
     /// grid does not show it.
     std::optional<bool> stable = std::nullopt;
     /// true: the loop is certainly stable: a stable plant at low gain

@@ -268,7 +268,7 @@ const Description<product::Evidence>& evidence_contract() {
         a.text(
              "level", [](const Evidence& e) { return product::to_string(e.level); },
              "read: form, parameters and units were read in code or the maker's text; partly: in texts of third "
-             "parties, or not completely; unverified.")
+             "parties, or not completely; unverified: no document was available.")
             .texts(
                 "read", [](const Evidence& e) -> const Texts& { return e.read; }, "Facts that were read.")
             .texts(

@@ -54,7 +54,7 @@ OptionalFinding dead_time_rules(const VerdictInput& c) {
     const LinearPlant* plant = c.context.subject.linear();
     if (plant == nullptr || plant->integrators() != 0 || plant->unstable_poles() > 0) return {};
     const double L = plant->dead_time();
-    // The sum of the lags is no measure of an oscillating plant: an undamped resonance has none.
+    // The sum of the lags does not measure an oscillating plant: an undamped resonance has none.
     const double lags = std::max(plant->lag_sum(), plant->time_scale() - L);
     const bool alone = plant->poles().empty();
     if (!(L > 0) || (!alone && !(lags > 0 && L >= kMinDeadTimeOverLags * lags))) return {};

@@ -28,7 +28,7 @@ struct Labels {
 };
 
 /// The steps of an evaluation that the request sets. If a step's size was only assumed, an actuator that is too small
-/// for it is no fault of the loop.
+/// for it is not a fault of the loop.
 struct GivenSteps {
     bool setpoint = false, load = false;
 };

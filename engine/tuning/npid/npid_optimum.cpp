@@ -39,7 +39,7 @@ constexpr double kLogBoundTolerance = 1e-9;                    // in ln: a point
 constexpr double kRoughTolerance = 1e-4, kFineTolerance = 1e-6;
 constexpr double kSettledOfTolerance = 0.01;
 constexpr double kMaxLogBoundDistance = 1e-3;  // in ln
-constexpr int kMaxSteps = 4000;                // of a response; one that has not settled by then is no candidate
+constexpr int kMaxSteps = 4000;                // of a response; one that has not settled by then is not a candidate
 
 class NpidSearch {
 public:

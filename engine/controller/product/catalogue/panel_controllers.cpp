@@ -63,7 +63,7 @@ Product eurotherm() {
                                     "base of a band in percent", "resolution of PB and of the times",
                                     "name of the switch of the direction", "discrete algorithm"},
                      .sources = {"Eurotherm 3116 manual p. 30 (control parameters)",
-                                 "HA028651 3116 and 3200 Engineering Handbook (named, PID pages not reached)"}},
+                                 "HA028651 3116 and 3200 Engineering Handbook (its PID pages could not be read)"}},
         .example = of_design_a({{"PB", 66.6667}, {"TI", 120.0}, {"TD", 20.0}}),
     };
 }

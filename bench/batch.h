@@ -1,4 +1,4 @@
-// The AMIGO test batch (Hagglund and Astrom 2004): 134 plants common in process industry.
+// The AMIGO test batch (Hägglund and Åström 2004): 134 plants common in process industry.
 #pragma once
 
 #include <cmath>

@@ -14,7 +14,7 @@ enum class ErrorKind {
     unstable_plant,          ///< no controller of the requested kind stabilises the plant
     no_feasible_controller,  ///< no controller meets the limits: relax them (the sentence says how far)
     unbounded_optimum,       ///< the optimum is unbounded: fix a filter or limit Mks
-    not_representable,       ///< a product cannot be this controller: take the nearest, or tune under its limits
+    not_representable,       ///< a product cannot represent this controller: take the nearest, or tune under its limits
     cancelled,               ///< the caller asked to stop
     timeout,                 ///< the time allowed has run out
     numerical_failure,       ///< the computation could not be finished to its accuracy

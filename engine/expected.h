@@ -1,4 +1,4 @@
-// A value or the Error that stands in its place. The interface is that of std::expected, which C++20 does not have.
+// A value, or the Error in its place. The interface is that of std::expected, which C++20 does not have.
 #pragma once
 
 #include <utility>

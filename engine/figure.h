@@ -8,8 +8,8 @@
 
 namespace tunewright {
 
-/// Reads like a std::optional. One that is empty and states no reason has the reason that the figure's description
-/// gives for all.
+/// Used like a std::optional. An empty one without a reason of its own has the reason that the figure's description
+/// states.
 template <class T>
 struct OrReason {
     std::optional<T> value = {};

@@ -1,5 +1,5 @@
-// A described member of a struct: what descriptions of types are made of, those of methods' options
-// (tuning/method/option_set.h) among them.
+// A described member of a struct: the element of all descriptions of types, also of those of methods' options
+// (tuning/method/option_set.h).
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@
 
 namespace tunewright {
 
-/// What a number must keep: every limit that is given.
+/// The limits that a number must keep, as far as they are given.
 struct NumberRule {
     std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {}, exclusive_maximum = {};
     bool not_zero = false;
     std::string cure = {};  ///< a sentence that is added when the rule is broken
 
-    /// Whether `value` lies between the limits.
+    /// True if `value` lies between the limits.
     bool between(double value) const {
         return !(minimum && value < *minimum) && !(exclusive_minimum && value <= *exclusive_minimum) &&
                !(maximum && value > *maximum) && !(exclusive_maximum && value >= *exclusive_maximum);
@@ -35,8 +35,8 @@ std::string word_of(const Words<E>& words, const E& value) {
     return {};
 }
 
-/// Bytes from the start of `object` to a member: known by this distance, members of one type share their code whatever
-/// struct they are in. `Owner` is T or what it extends.
+/// Bytes from the start of `object` to a member. Members of one type that are known by this distance share their code
+/// in all structs. `Owner` is T or its base.
 template <class T, class M, class Owner>
 std::ptrdiff_t offset_of(const T& object, M Owner::*member) {
     return reinterpret_cast<const char*>(&(object.*member)) - reinterpret_cast<const char*>(&object);

@@ -1,5 +1,5 @@
-// How long work reports progress, is stopped, and is spread over threads. The engine starts no thread and reads no
-// clock: the caller supplies both.
+// How a long computation reports progress, is stopped, and is spread over threads. The engine starts no thread and
+// reads no clock: the caller supplies both.
 #pragma once
 
 #include <functional>

@@ -21,7 +21,7 @@ std::string shown_byte(char c) {
     return std::string("the byte 0x") + kHex[byte >> 4] + kHex[byte & 15];
 }
 
-/// The text that the inside of a JSON string stands for; empty if it is not valid.
+/// Decodes the inside of a JSON string; empty if it is not valid.
 std::optional<std::string> spelled(const std::string& inside) {
     const Json value = Json::parse("\"" + inside + "\"", nullptr, false);
     if (!value.is_string()) return std::nullopt;

@@ -184,7 +184,7 @@ void Loops::gather(long number, std::string_view line, std::vector<RawEntry>& en
     }
 }
 
-/// The first of the lines becomes a row of its own, which cannot be read; the others are read again.
+/// Refuses the first of the lines as a row of its own, which cannot be read, and reads the others again.
 void Loops::give_up(std::vector<RawEntry>& entries) {
     std::vector<Held> lines = std::exchange(open_, {});
     lines.front().unclosed = true;

@@ -46,7 +46,7 @@ bool Lines::feed_known(std::string_view bytes, const Take& take) {
     }
     const std::size_t unit = code_ == Code::bytes ? 1 : 2;
     const std::size_t low = code_ == Code::utf16_big ? 1 : 0;
-    // For a UTF-16 unit that is an ASCII character, and for any byte.
+    // The ASCII character at i: a UTF-16 unit if it is one, else a code that ends no line; any byte counts as one.
     const auto character = [&](std::size_t i) {
         return unit == 1 || bytes[i + 1 - low] == '\0' ? bytes[i + low] : '\x7F';
     };

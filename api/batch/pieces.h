@@ -40,9 +40,9 @@ public:
 
     Lines(Ends ends, std::size_t longest) : ends_(ends), longest_(longest) {}
 
-    /// Reads the next bytes; `take` gets each line that ends in them. A byte order mark at the start means UTF-16 and
-    /// is not part of the first line; with Ends::any, lines that are not valid UTF-8 are read as Windows-1252
-    /// (api/csv/text.h).
+    /// Reads the next bytes; `take` gets each line that ends in them. A byte order mark at the start decides the
+    /// encoding and is not part of the first line; with Ends::any, lines that are not valid UTF-8 are read as
+    /// Windows-1252 (api/csv/text.h).
     bool feed(std::string_view bytes, const Take& take);
     /// Passes on the last line if it has no line end.
     bool finish(const Take& take);

@@ -63,7 +63,7 @@ const Description<IdentifiedController>& identified_controller_contract() {
             .field("limited_rows", &C::limited_rows, only_answered(integer(0, 1 << 30)),
                    "Rows left out at a limit of u.")
             .field("odd_rows", &C::odd_rows, only_answered(integer(0, 1 << 30)),
-                   "Rows left out because u moves otherwise there.")
+                   "Rows left out because u does not follow the settings there.")
             .field("warnings", &C::warnings, list_of(object(warning_contract())), "Remarks.", {.required = true});
         return d;
     }();
@@ -79,7 +79,7 @@ const Description<ControllerRecordAnswer>& controller_record_answer_contract() {
         d.field("identified", &A::found, answer(identified_controller_contract()), "From the record.",
                 {.required = true})
             .field("typing", &A::typing, maybe(answer(settings_answer_contract())),
-                   "The same in the product of implement: what stands in it today.")
+                   "The same as settings of the product of implement.")
             .field("not_typed", &A::not_typed, maybe(words()),
                    "Instead of typing: the reason why the product cannot have these settings.");
         return d;

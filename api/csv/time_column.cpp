@@ -73,7 +73,7 @@ void TimeColumn::read_short_clock(std::string_view text, const CsvLayout& layout
         short_is_minutes_ = stamp->seconds > kDay;
         if (short_is_minutes_)
             notes_.push_back("Times such as " + in_quotes(first) + " are read as minutes and seconds, because " +
-                             in_quotes(cell) + " is no time of day; write " + std::string(cell) +
+                             in_quotes(cell) + " is not a time of day; write " + std::string(cell) +
                              ":00 for hours and minutes.");
     }
     if (short_is_minutes_ || first.empty()) return;

@@ -16,12 +16,12 @@ struct FieldError {
     std::string detail;   ///< value, rule, cure
 };
 
-/// Rows of a record as read, which show why it determines no model.
+/// Rows of a record as read, which show why no model can be identified from it.
 struct RecordSamples {
     std::size_t samples = 0;  ///< of the whole record
     std::vector<double> t, u, y;
     std::vector<double> r = {};           ///< empty: the record has none
-    std::vector<double> move_times = {};  ///< of u (record_kind.h); empty: it does not move, or cannot be told
+    std::vector<double> move_times = {};  ///< of u (record_kind.h); empty: u does not move, or the times are unknown
 };
 
 /// Options of the method with which the request is feasible; a program can send it again with them.

@@ -1,4 +1,4 @@
-// Robust PID design in the way of Garpinger and Hagglund (2008), as a program of one file that uses the standard
+// Robust PID design in the way of Garpinger and Hägglund (2008), as a program of one file that uses the standard
 // library only and nothing of the engine: Nelder-Mead over (ln Ti, ln Td), the gain from the Ms and Mt circles on a
 // frequency grid, the load IAE by a simulation of fixed step with a buffer for the dead time.
 //
@@ -166,7 +166,7 @@ public:
         for (std::size_t j = 0; j < plant.num.size(); ++j) C_[j] = plant.num[j] / plant.den[n_];
     }
 
-    /// AMIGO's rules on the ultimate point (Astrom and Hagglund 2006), of which the gain is not used.
+    /// AMIGO's rules on the ultimate point (Åström and Hägglund 2006), of which the gain is not used.
     Shape start(bool pi) const {
         const double Tu = 2 * std::numbers::pi,
                      static_gain = plant_.den[0] == 0 ? INFINITY : plant_.num[0] / plant_.den[0];

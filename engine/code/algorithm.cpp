@@ -108,7 +108,7 @@ private:
         return input;
     }
 
-    /// A setting of the user's becomes a state of the program.
+    /// Turns a setting of the user into a state of the program.
     void take_over(const FollowedSetting& setting) {
         for (Declaration& known : program_.variables)
             if (known.name == setting.name && known.role == VariableRole::parameter) {

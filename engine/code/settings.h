@@ -29,7 +29,7 @@ struct Settings {
 Settings settings_of(const ParallelPid& gains);
 
 /// Tt of the anti-windup: sqrt(Ti Td), Ti without derivative action; empty for pure integral action, which has no such
-/// time. Source: Astrom and Hagglund, Advanced PID Control (2006), section 3.5.
+/// time. Source: Åström and Hägglund, Advanced PID Control (2006), section 3.5.
 std::optional<double> tracking_time(const ParallelPid& gains);
 
 /// A tenth of the shorter of Ti and Td, at most the filter's Tf and at most `longest`, the longest that the loop

@@ -26,7 +26,7 @@ struct EvaluateOptions {
     int points = 400;               ///< points of each trace: 0 (none) or 2 to 20,000
     std::optional<ActuatorLimits> actuator;
     std::optional<NoiseOptions> noise;
-    std::optional<double> rank_Ms;      ///< entries with Ms above it rank last; empty: as every ranking has it
+    std::optional<double> rank_Ms;      ///< entries with Ms above it rank last; empty: the default of every ranking
     std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: only several designs
     bool tradeoff =
         false;  ///< entries have the trade-off between servo and regulation (tuning/arrieta/tradeoff_report.h)

@@ -10,7 +10,7 @@
 namespace tunewright {
 namespace {
 
-/// Error of an Npid that no plant could use.
+/// Error of an Npid that is wrong for every plant.
 std::optional<Error> check_npid(const Controller& controller) {
     const auto* npid = std::get_if<Npid>(&controller);
     if (npid == nullptr) return std::nullopt;

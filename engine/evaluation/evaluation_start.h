@@ -25,7 +25,7 @@ Controller resolved(Controller controller, const EvaluateOptions& options);
 /// Starts an evaluation: the resolved controller with its equivalents.
 Evaluation begun(const Controller& controller, const EvaluateOptions& options);
 
-/// An error of a loop that cannot be formed; without a place it is placed at the controller.
+/// The error of a loop that cannot be formed; if its `where` is empty it names the controller.
 Error of_controller(Error error);
 
 /// Sets an unstable loop's figures and warning.

@@ -30,7 +30,7 @@ RegionFigures region_figures(const PlantFamily& family, const ParallelPid& contr
 FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points,
                                  const std::vector<double>& kept = {});
 
-/// The whole grid, of a measured plant, every so many points.
+/// Every n-th point of the whole grid of a measured plant.
 FrequencyTraces frequency_traces(const LoopGrid& whole, int points);
 
 }  // namespace tunewright

@@ -56,7 +56,7 @@ Error no_response(const CleanRecord& r, double percent, const char* asked) {
                 std::string("No ") + asked + " model explains y beyond noise and drift (the best reaches a fit of " +
                     text(std::max(0.0, percent), 3) + " %). Use model auto, or check whether y responds to u at all."};
     }
-    constexpr double kMovesWithU = 45;  // per cent: more than the fit by chance of a y that drifts by itself
+    constexpr double kMovesWithU = 45;  // per cent: more than a y that drifts by itself reaches by chance
     if (percent > kMovesWithU) {
         return {ErrorKind::not_identifiable, "record",
                 "No linear model follows y (the best reaches a fit of " + text(percent, 3) +

@@ -31,8 +31,9 @@ struct Candidate {
     double criterion = 0;    ///< information criterion, smaller is better
     std::map<std::string, double> standard_errors;  ///< K, L and T, or T1, T2, or T, zeta, or a1, a2, b (sopdt_zero)
     std::vector<double> y_model;                    ///< its free run at the times of IdentifiedModel::fit
-    bool much_worse = false;                     ///< another candidate fits so much better that nobody need look at it
-    std::vector<std::string> undetermined = {};  ///< times that the record does not determine, as named above
+    bool much_worse = false;                        ///< the best candidate fits better by more than 3 points of
+                                                    ///< fit_percent
+    std::vector<std::string> undetermined = {};     ///< times that the record does not determine, as named above
 };
 
 /// Covariance of the chosen plant's parameters; rows and columns in the order of `names`.
@@ -147,33 +148,28 @@ struct IdentifiedModel {
 /// the response to the piecewise constant u is exact at every time stamp.
 ///
 /// - Rows of equal time: the last u counts from that time on, each y is data. Rows out of order or without numbers are
-///   dropped; u of a row whose y is no number counts.
+///   dropped; u of a row whose y is not a number counts.
 /// - `u0`: u stepped from u0 to its first value at the first sample. Without it a start that is not at rest is
 ///   recognised if the record shows it, and noted. `y0` is weighted like ten samples of y at rest.
 /// - `model` automatic fits every structure and keeps the one with the least information criterion, or the simpler one
-///   if
-///   they are equal within noise. `fopdt` may have T < 0 (K is then negative too for 1/(s - 1)) for a record in which
-///   u changes more than twice.
+///   if they are equal within noise. `fopdt` may have T < 0 (K is then negative too for 1/(s - 1)) for a record in
+///   which u changes more than twice.
 /// - Rows that are not small compared with the dead time show moves of u late (fit/move_times.h): noted, and included
-///   in the
-///   standard error of L.
+///   in the standard error of L.
 /// - A drift and a lasting load are fitted with the model if the record shows them, and reported as warnings.
-/// - Further measured inputs (Record::d) are identified with the plant, each with its own gain, lag and dead
-///   time (further_inputs/further_inputs.h); one that explains nothing is omitted, and a note names it.
+/// - Further measured inputs (Record::d) are identified with the plant, each with its own gain, lag and dead time
+///   (further_inputs/further_inputs.h); one that explains nothing is omitted, and a note names it.
 /// - A relay test also gives `limit_cycle`, `frequency_points`; if no structure fits it, the model is constrained to
-///   the
-///   measured response at the oscillation (and to the static gain of a biased test), and a warning says so.
+///   the measured response at the oscillation (and to the static gain of a biased test), and a warning says so.
 /// - `method` relay_fourier: Liu and Gao's formulas alone; two_point: the construction from one settled step. Neither
 ///   gives standard errors.
 /// - Standard errors and covariance count correlated residuals as their number of independent samples, and include what
 ///   rounding of y does.
 /// - If a controller moves u in response to y, the model is based on the effect of the set point's moves (column r, or
-///   clear
-///   kicks of u) on u and y (closed_loop.h); without any, on its rows in manual (closed_loop/loop_parts.h);
+///   clear kicks of u) on u and y (closed_loop.h); without any, on its rows in manual (closed_loop/loop_parts.h);
 ///   without these either, the record is refused. Warning closed-loop.
-/// - `fit` has at most 2,000 points; of more than 20,000 samples means over blocks are fitted, if the
-///   plant is slow compared with them; of more than 100,000 always. Warning codes:
-///   diagnosis.h, model_answer.cpp, data_quality.h.
+/// - `fit` has at most 2,000 points; of more than 20,000 samples means over blocks are fitted, if the plant is slow
+///   compared with them; of more than 100,000 always. Warning codes: diagnosis.h, model_answer.cpp, data_quality.h.
 ///
 /// Progress runs from 0 to 1 with stage "identify". Errors: not_identifiable with the cure (fewer than 8 samples, u or
 /// y constant, no response, a step in the last samples, fewer than two cycles for relay_fourier); invalid_argument

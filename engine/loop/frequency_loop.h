@@ -1,4 +1,4 @@
-// A loop over frequency, whatever it is made of: what peaks and margins ask of it.
+// The interface of a loop over frequency, of any kind, that peaks and margins need.
 //
 //   const LoopGrid grid = make_peak_grid(loop);       // of a Loop, SampledLoop, ImcLoop or MeasuredLoop
 //   const Peaks peaks = find_peaks(loop, grid);       // one grid serves peaks and margins alike
@@ -15,7 +15,7 @@ namespace tunewright {
 
 /// - `at`: the loop at omega > 0, as far up as its grid goes.
 /// - `ends`: the loop's limits at those ends of its axis that it knows, omega ascending from 0 to infinity or to pi/Ts;
-///   L real or infinite, of the other functions the magnitudes count.
+///   L is real or infinite there; of the other functions only the magnitudes count.
 /// - `turning_time` >= 0: the dead time that turns L between points of the grid, rad for one rad/time.
 template <class L>
 concept FrequencyLoop = requires(const L& loop, double omega) {
@@ -37,7 +37,7 @@ struct AnyLoop {
     double turning_time;
 };
 
-/// Whether the loop exists and is stable.
+/// True if the loop exists and is stable.
 template <FrequencyLoop L>
 bool is_stable(const Expected<L>& loop) {
     return loop && count_unstable_poles(*loop).stable();

@@ -35,8 +35,8 @@ private:
 
 LoopGrid make_loop_grid(const ImcLoop& loop);
 
-/// Plant and Q being stable, the loop is where D does not encircle 0: the change of its argument from 0 to infinity,
-/// step by step, until it cannot be mistaken.
+/// With stable plant and Q the loop is stable if D does not encircle 0. Follows the change of D's argument from 0 to
+/// infinity, in steps so short that it is unambiguous.
 StabilityCount count_unstable_poles(const ImcLoop& loop);
 
 }  // namespace tunewright

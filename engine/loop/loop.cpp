@@ -131,7 +131,7 @@ std::vector<LoopPoint> Loop::at(std::span<const double> omega) const {
 LoopGrid Loop::ends() const {
     LoopPoint zero = at(0);
     if (!std::isfinite(magnitude(zero.CS))) zero.CS = 0;
-    // A dead time turns L to every direction again and again, to the worst too.
+    // With a dead time L takes every direction again and again, also the worst.
     const double q = signed_high_frequency_gain(), L = plant_->dead_time() > 0 ? -std::abs(q) : q, nearest = 1 + L;
     return {{0, std::numeric_limits<double>::infinity()},
             {zero, {L, 1 / nearest, L / nearest, controller_high_frequency_gain() / nearest}}};

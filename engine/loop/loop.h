@@ -28,8 +28,8 @@ struct LoopGrid {
     double resolved_to = 0;  ///< above it the dead time turns L faster than the grid follows; |L| is still followed
 };
 
-/// Errors of a controller that no plant could use: numbers that are not finite, Tf <= 0 with a filter, all gains 0, a
-/// derivative of r without filter.
+/// Errors of a controller that is wrong for every plant: numbers that are not finite, Tf <= 0 with a filter, all gains
+/// 0, a derivative of r without filter.
 std::optional<Error> check_controller(const ParallelPid& gains);
 
 /// C(s) of the filtered controller, without set-point weights.

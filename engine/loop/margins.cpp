@@ -2,12 +2,12 @@
 //
 // 1. Between neighbours that a dead time turns by less than a radian, L crosses the real axis and the unit circle at
 //    most once: where its sign, or |L| - 1, changes.
-// 2. Where it turns by more, crossings of the real axis lie 2 pi/delay apart, all along a |L| that rises or falls. The
-//    one nearest to -1 is the first beside the place where |L| = 1; where there is none, the first beside the top of
-//    |L|: that of a hill between three points of the grid, else the end at which |L| is larger.
-// 3. From there the axis is walked along in strides of a quarter of a radian of the dead time, to the first change of
-//    sign on the negative side on either hand, which is located to rounding.
-// 4. Stretches whose |L| is smaller than at a crossing that is known are left out.
+// 2. Where it turns by more, crossings of the real axis lie 2 pi/delay apart, along a |L| that rises or falls. The
+//    nearest to -1 is the first one next to |L| = 1; if |L| does not pass 1 it is the first one next to the largest
+//    |L|: a maximum between three points of the grid, else the end with the larger |L|.
+// 3. From there L is evaluated in both directions, at every quarter of a radian of the dead time, until it crosses the
+//    real axis on the negative side; that crossing is located to rounding.
+// 4. Intervals in which |L| is smaller than at a known crossing are skipped.
 #include "engine/loop/margins.h"
 
 #include <algorithm>
@@ -71,8 +71,8 @@ void note_real_crossing(Margins& margins, double real, double omega) {
     }
 }
 
-/// The first frequency on the way at which L is negative: where |L| falls, or rises, all the way from 1 or from a top
-/// on, no later one is as near to -1.
+/// Notes the first frequency on the way at which L is negative. If |L| falls or rises all the way from 1, or from its
+/// maximum, no later one is as near to -1.
 void note_first_crossing(Margins& margins, const AnyLoop& loop, double from, double to) {
     const double stride = std::copysign(kStride / loop.turning_time, to - from);
     auto a = loop.at(from).L;
@@ -91,7 +91,7 @@ void note_first_crossing(Margins& margins, const AnyLoop& loop, double from, dou
 }
 
 /// Between the grid's points i - 1 and i, where the dead time turns L often: of all crossings those nearest to -1. They
-/// lie beside |L| = 1, else beside the place where |L| is largest.
+/// lie next to |L| = 1, else next to the largest |L|.
 void note_crossings_of_turns(Margins& margins, const AnyLoop& loop, const LoopGrid& grid, std::size_t i) {
     const auto gain = [&](std::size_t k) { return magnitude(grid.point[k].L); };
     const double left = grid.omega[i - 1], right = grid.omega[i];
@@ -110,7 +110,8 @@ void note_crossings_of_turns(Margins& margins, const AnyLoop& loop, const LoopGr
 }
 
 void note_unit_crossing(Margins& margins, std::complex<double> L, double omega) {
-    double lag = std::arg(L) + kPi;  // from -1 counter-clockwise to L: what a further lag uses up, in [0, 2 pi)
+    double lag = std::arg(L) + kPi;  // from -1 counter-clockwise to L: the additional lag that brings L to -1, in [0, 2
+                                     // pi)
     if (lag >= 2 * kPi) lag -= 2 * kPi;
     const double distance = std::min(lag, 2 * kPi - lag);
     if (distance < margins.phase_margin) {

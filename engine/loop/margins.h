@@ -22,8 +22,8 @@ struct Margins {
 };
 
 /// From the crossings within the grid and at the loop's ends. L without the dead time must change little from point to
-/// point: the grid has points of its own around corners and resonances. At a coarser one a crossing beside a hill
-/// between two points would be missed.
+/// point: the grid has points of its own around corners and resonances. On a coarser grid a pair of crossings between
+/// two points would be missed.
 Margins find_margins(const AnyLoop& loop, const LoopGrid& grid);
 
 /// A gain and the period at which the loop oscillates with it.

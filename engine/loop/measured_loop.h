@@ -11,7 +11,7 @@ namespace tunewright {
 class MeasuredLoop {
 public:
     /// Errors: those of check_controller; unsupported ("controller") where |L| at the band's end is above
-    /// kMaxModulusAtEnd, so that the band does not hold all that matters.
+    /// kMaxModulusAtEnd, because the loop is then not determined by the measured band.
     static Expected<MeasuredLoop> make(const MeasuredPlant& plant, const ParallelPid& gains);
 
     LoopPoint at(double omega) const;

@@ -20,7 +20,7 @@ namespace tunewright {
 /// (-q)^k (1 - k L/Ts)), k >= 1 with k L < Ts. For a P controller with a tiny loop gain this is exactly |Kp|. The rest
 /// is computed by adaptive quadrature, with a relative error below 1e-4.
 ///
-/// The loop must be stable. Empty where the ratio is infinite: a derivative without filter. (Astrom and Murray,
+/// The loop must be stable. Empty where the ratio is infinite: a derivative without filter. (Åström and Murray,
 /// Feedback Systems, 2008, section 12, for spectra in loops; the sampled form is derived here.)
 std::optional<double> noise_gain(const Loop& loop, double sample_time);
 

@@ -19,7 +19,7 @@ double magnitude_CS(const LoopPoint& p) { return magnitude(p.CS); }
 double magnitude_C(const LoopPoint& p) { return magnitude(p.CS) * magnitude(1.0 + p.L); }
 
 constexpr double kMinShareOfMaximum =
-    0.8;  // of the largest grid value: a lower point is no candidate, because neighbours on the grid differ by less
+    0.8;  // of the largest grid value: a lower point is not a candidate, because neighbours on the grid differ by less
 
 constexpr double kLongTurn = 0.3;  // rad of the dead time between neighbours of the grid: a longer turn may hide a peak
 // rad between two evaluations there. For small |L| the maxima along a turn are as wide as those of a sine.

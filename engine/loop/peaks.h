@@ -17,15 +17,15 @@ struct Peaks {
 };
 
 /// Peaks of a stable loop, refined between grid points to a relative error below 1e-9 where the grid is resolved, its
-/// ends included. Where S moves little between neighbours the dead time may still turn L between them, and C S with
-/// it: the turns that let a peak be higher are looked at. Beyond the resolved range of a loop that goes on to infinity
-/// the envelope's maximum is searched turn by turn.
+/// ends included. Between neighbours with similar S the dead time may still turn L, and C S with it; those turns are
+/// searched in which a peak can be higher. Beyond the resolved range of a loop that goes on to infinity the envelope's
+/// maximum is searched turn by turn.
 Peaks find_peaks(const AnyLoop& loop, const LoopGrid& grid);
 
 /// The peak of |S| alone, at a third of the cost.
 Peak find_sensitivity_peak(const AnyLoop& loop, const LoopGrid& grid);
 
-/// The grid, finer where all of |S| - 1 is small and its maximum as flat. `enough_below`: as in Refinement.
+/// The grid, refined if |S| - 1 is small everywhere, so that its maximum is flat. `enough_below`: as in Refinement.
 LoopGrid refined_at_low_peak(const AnyLoop& loop, LoopGrid grid, double enough_below = 0);
 
 /// A grid that is fine enough for `find_peaks` even if all of |S| - 1 is small.

@@ -29,7 +29,7 @@ struct ColumnProduct {
 };
 void multiply_columns(const ColumnProduct& product, Registers registers = widest_registers());
 
-/// z := the combination of the columns with weights z, followed by the inputs. z has n numbers.
+/// z := sum of the n columns, each times its weight in z, then the sum of the columns of the inputs. z has n numbers.
 void map_columns(const double* columns, std::size_t n, std::span<double> z, std::span<const double> inputs,
                  Registers registers = widest_registers());
 

@@ -29,7 +29,7 @@ PointFigures figures(const PointEvaluation& look) {
     return result;
 }
 
-/// The evaluations of a curve, ascending, and the search for the worst point between them.
+/// The evaluations along a curve, in ascending order, and the search for the worst point between them.
 class CurveLooks {
 public:
     CurveLooks(PointDesigns& places, OwnOptima& own, const SettingsInUse& settings)

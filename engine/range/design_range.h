@@ -28,8 +28,7 @@ struct RangeProblem {
     bool hold_between = false;  ///< one setting keeps the limits between the points too: for exact models
 };
 
-/// Whether a schedule is worthwhile, by the largest ratio of the IAE with one setting to that of the point's own
-/// optimum.
+/// The verdict on a schedule, by the largest ratio of the IAE with one setting to that of the point's own optimum.
 enum class Verdict {
     one_setting,  ///< at most 1 + allowance: a schedule has no advantage
     optional,     ///< at most 1.3: a schedule has an advantage that few loops need

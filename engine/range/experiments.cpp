@@ -33,7 +33,7 @@ std::optional<Error> fault_of(const SteadyBranch& branch, const ExperimentOption
     return std::nullopt;
 }
 
-/// The range of y over the range.
+/// The interval of y over the operating range.
 double y_span(const SteadyBranch& branch) {
     const auto [low, high] = std::ranges::minmax(branch.states(), {}, &SteadyState::y);
     return high.y - low.y;

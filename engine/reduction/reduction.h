@@ -68,7 +68,7 @@ struct ReducedModel {
 /// Errors: unsupported (`where` "plant" or "reduction/method") for right-half-plane poles, undamped modes, zeros at the
 /// origin, too many integrators, and if the given method does not apply; the message names another. invalid_argument,
 /// `where` "reduction/horizon", for a horizon with a method that has none, or one before the response moves. Sources:
-/// Skogestad, J. Process Control 13 (2003), Eqs. 10-11 and Section 2.2; Hagglund & Astrom, J. Process Control 14
+/// Skogestad, J. Process Control 13 (2003), Eqs. 10-11 and Section 2.2; Hägglund & Åström, J. Process Control 14
 /// (2004), Section 2; Alfaro, Ciencia y Tecnologia 24 (2006).
 Expected<ReducedModel> reduce(const LinearPlant& plant, const ReductionRequest& request);
 

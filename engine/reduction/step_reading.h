@@ -18,7 +18,7 @@ StepSample crossing(const Realisation& realisation, const StepSample& from, cons
 /// if never.
 double time_at(const LinearPlant& plant, const std::vector<StepSample>& samples, double level);
 
-/// A warning "not-monotone" if |static gain| over the response's total variation is below 0.8 (Astrom & Hagglund 2006,
+/// A warning "not-monotone" if |static gain| over the response's total variation is below 0.8 (Åström & Hägglund 2006,
 /// Section 2.6).
 std::vector<Warning> monotonicity_warnings(const std::vector<StepSample>& samples, double static_gain);
 

@@ -52,10 +52,11 @@ Expected<device::Fitted> nearest(const AnalysedPlant& subject, const device::Dev
     wish.start = pid;
     auto fitted = device::design(device, {plant}, wish, control);
     if (!fitted) return why;
-    fitted->notes.insert(fitted->notes.begin(),
-                         {"nearest-settings", std::string(device.product->name) +
-                                                  " cannot be the method's controller. These settings have the least "
-                                                  "load IAE that it reaches within the ideal loop's own Ms and Mt."});
+    fitted->notes.insert(
+        fitted->notes.begin(),
+        {"nearest-settings", std::string(device.product->name) +
+                                 " cannot represent the method's controller. These settings have the least "
+                                 "load IAE that it reaches within the ideal loop's own Ms and Mt."});
     return fitted;
 }
 

@@ -44,7 +44,8 @@ struct PlacedPeak {
     double value = 0;
     PeakLoop loop = PeakLoop::ideal;
     bool on_worst_plant() const { return loop == PeakLoop::worst_plant || loop == PeakLoop::ideal_on_worst_plant; }
-    /// Above its own limit by more than is shown as holding it (tuning/limits.h): what ranking and verdict go by.
+    /// True if the value exceeds its limit by more than the tolerance for showing that the limit is kept
+    /// (tuning/limits.h). Ranking and verdict use this.
     bool exceeds(double limit) const;
 };
 

@@ -18,9 +18,10 @@ namespace tunewright {
 struct EvaluationResult {
     std::optional<OperatingPoint> operating_point;  ///< only for a nonlinear plant
     std::vector<TuningEntry> controllers;           ///< without a method, in the order of the request
-    std::optional<double> rank_Ms;          ///< the limit on the Ms of all that their standing goes by; of controllers
-    std::vector<verdict::Finding> verdict;  ///< over all of them
-    std::optional<int> proposed;            ///< the one to show first; none without controllers
+    std::optional<double> rank_Ms;                  ///< the common limit on Ms for the standing of all; empty without
+                                                    ///< controllers
+    std::vector<verdict::Finding> verdict;          ///< over all of them
+    std::optional<int> proposed;                    ///< the one to show first; none without controllers
 };
 
 /// Each controller is evaluated alone, in the order of the request; a stop request takes effect between two of them.

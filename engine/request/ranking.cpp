@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Of the loop as it will run: on the worst plant that it must serve, and in the user's own controller. Empty where one
-// of these has none.
+// Ms of the loop that will run: on the worst plant that the controller must serve, and as the user's controller
+// computes it. Empty where one of these has none.
 Figure judged_Ms(const TuningEntry& entry) {
     const Evaluation& evaluation = *entry.evaluation;
     const Figure& runs = entry.on_device ? entry.on_device->loop.robustness.Ms : evaluation.robustness.Ms;
@@ -124,7 +124,7 @@ std::vector<int> ranked(std::vector<TuningEntry>& entries, const RankingTerms& t
         order.push_back(static_cast<int>(i));
         entry.standing = standing_of(entry, entry.method == "baseline" ? of_baseline : entry.asked_Ms, terms);
         const auto optimum = optimum_for(entry, entries);
-        // For a nonlinear plant too, its own load IAE: the figures of the linearisation would hide its behaviour.
+        // Its own load IAE for a nonlinear plant too: the figures of the linearisation would hide its behaviour.
         const auto& IAE = entry.evaluation->performance.load.IAE;
         entry.standing->excess_percent = optimum && IAE && *optimum > 0
                                              ? Figure(100 * (*IAE / *optimum - 1))

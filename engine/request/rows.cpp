@@ -92,9 +92,10 @@ Expected<TunedController> Rows::tuned_with(const PlannedRow& planned, const std:
         return tuned;
     }
     if (method.tune_on_points) return method.tune_on_points(*subject_.measured(), options, control);
-    return Error{ErrorKind::unsupported, "",
-                 "The method " + method.id +
-                     " needs a model of the plant; points of a frequency response serve the method robust."};
+    return Error{
+        ErrorKind::unsupported, "",
+        "The method " + method.id +
+            " needs a model of the plant; points of a frequency response are enough only for the method robust."};
 }
 
 void Rows::add_device_entry(TuningEntry& entry, std::optional<device::Fitted> fitted, const RunControl& control) const {

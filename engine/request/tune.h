@@ -16,7 +16,7 @@
 
 namespace tunewright {
 
-/// When methods that can hold their limits over the 95 % confidence region of a record's model do so.
+/// When a method that can hold its limits over the 95 % confidence region of a record's model does so.
 enum class IdentifiedRegion {
     where_needed,  ///< if the design for the model alone breaks a limit on the region: then both are answered, the
                    ///< design for the region first
@@ -30,8 +30,8 @@ struct UltimateTest {
     double Pu = 1;            ///< period of that oscillation, > 0
     std::optional<double> K;  ///< static gain, y/u, != 0, with the sign of Ku
 
-    /// An error if the signs differ: a proportional controller makes a plant oscillate only at a gain of the plant's
-    /// own sign.
+    /// An error if the signs of K and Ku differ: a proportional controller makes a plant oscillate only at a gain of
+    /// the plant's own sign.
     std::optional<Error> fault() const;
 };
 

@@ -15,13 +15,13 @@ inline constexpr double kMaxMs = 4, kMaxMt = kMaxMs;
 inline constexpr double kDefaultTf_over_Td = 0.1;
 /// Largest overshoot of a set-point step, percent.
 inline constexpr double kDefaultMaxOvershootPercent = 5;
-/// Largest Ms of an entry that ranks among those that hold, whatever was asked of it: the upper end of Åström and
-/// Hägglund's reasonable range.
+/// Largest Ms with which an entry ranks among those that keep their limits, whatever its own limit is: the upper end of
+/// Åström and Hägglund's reasonable range.
 inline constexpr double kDefaultMaxRankedMs = 2;
 
 // ---- largest relative excess over a limit that counts as holding it, from the tightest to the widest
 
-/// Step: the point of a search for one PID, after Newton's method has moved it back to its limits. That ends within
+/// Step: the point of a search for one PID, after Newton's method has moved it back to its limits. Its result is within
 /// rounding of them.
 inline constexpr double kMaxRelativeExcessStepped = 1e-8;
 /// Search: the end of a search, on the search's own frequencies. Far below the next tolerance, far above rounding.

@@ -15,7 +15,7 @@ struct PeakLimits {
     bool m_circle = false;  ///< one circle around the circles of Ms and Mt in their place
 };
 
-/// The largest relative excess over a limit; <= 0: all hold. The circles are looked at one by one.
+/// The largest relative excess over a limit; <= 0: all hold. The circles are checked one by one.
 inline double excess_of(const Peaks& peaks, const PeakLimits& limits) {
     const double circles = std::max(peaks.S.value / limits.Ms, peaks.T.value / limits.Mt);
     return (limits.Mks ? std::max(circles, peaks.CS.value / *limits.Mks) : circles) - 1;

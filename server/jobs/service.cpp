@@ -120,7 +120,7 @@ void JobService::submit(Order order, std::function<void(Submission)> done, WaitE
         const std::string id = submission.job.id;
         done(std::move(submission));
         claims_.arrived();
-        // Earlier waits have been told that the service stops; this one has not.
+        // Earlier waits have been notified that the service stops; this one has not.
         if (draining_) waits_.notify(id);
     };
     store_.accept(std::move(job), accepted);

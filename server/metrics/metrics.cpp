@@ -41,8 +41,8 @@ double seconds_since(const std::optional<UnixMs>& then, UnixMs now) {
 
 }  // namespace
 
-/// Histograms of times, one for each value of a label. The family finds one by building a map of labels; for each
-/// request that is too slow.
+/// Caches the histograms of a family by the value of their label: a lookup in the family builds a map of labels, which
+/// is too slow for every request.
 class TimesByLabel {
 public:
     TimesByLabel(prometheus::Family<Histogram>& family, const char* label, Histogram::BucketBoundaries bounds)

@@ -36,7 +36,7 @@ struct NotifierSettings {
 
 class Notifier {
 public:
-    /// The interval at which the store is asked, without a wake-up.
+    /// The interval at which the store is asked if nothing else wakes the notifier.
     static constexpr std::chrono::milliseconds kPoll{1000};
     /// A notification taken here is reserved for this long: longer than the longest attempt, so that no other process
     /// sends it at the same time. If the process dies, it becomes available again after that.

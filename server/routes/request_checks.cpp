@@ -33,7 +33,7 @@ std::size_t handling_weight(const http::Request& request) {
     const std::size_t bytes = request.body.size();
     if (!http::sends_json(request)) return (kStoredCopies + kCells) * bytes;
     const std::size_t tree = api::tree_size(request.body);
-    if (tree > api::kMaxTree) return 0;  // a refused body needs no memory
+    if (tree > api::kMaxTree) return 0;  // a body that will be refused needs no memory
     return kStoredCopies * bytes + tree + kCells * texts_of(request.body);
 }
 

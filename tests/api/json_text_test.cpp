@@ -1,4 +1,4 @@
-// Numbers as text, strict parsing, canonical spelling, digest.
+// Numbers as text, strict parsing, canonical form, digest.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

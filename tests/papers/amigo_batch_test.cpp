@@ -1,4 +1,4 @@
-// Hagglund and Astrom (2004): AMIGO over the test batch, tuned from the plants and evaluated, compared with Ms, Mt and
+// Hägglund and Åström (2004): AMIGO over the test batch, tuned from the plants and evaluated, compared with Ms, Mt and
 // IAE of an independent solver (tests/data/robust, cases amigo_pid and amigo_pi).
 #include <gtest/gtest.h>
 

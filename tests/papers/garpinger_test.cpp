@@ -1,4 +1,4 @@
-// Garpinger and Hagglund (2008): the printed designs of Examples 1 and 2, and the test batch compared with
+// Garpinger and Hägglund (2008): the printed designs of Examples 1 and 2, and the test batch compared with
 // independently computed optima.
 #include <gtest/gtest.h>
 

@@ -57,7 +57,7 @@ class Upload:
 
 
 def amigo_batch():
-    """The 134 plants of Hagglund and Astrom (2004), as in bench/batch.h."""
+    """The 134 plants of Hägglund and Åström (2004), as in bench/batch.h."""
     def lags(times, gain=1):
         product = gain
         for T in times:

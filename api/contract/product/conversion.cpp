@@ -39,8 +39,8 @@ Json notes_schema(SchemaBook&) {
                 {"deviation",
                  {{"type", "boolean"},
                   {"description",
-                   "true: a part of the design that the product cannot do, or something to be done beside it. false: "
-                   "how the settings were computed."}}}}},
+                   "true: it names a part of the design that the product cannot implement, or something to do in "
+                   "addition. false: it says how the settings were computed."}}}}},
               {"required", {"code", "detail", "deviation"}},
               {"additionalProperties", false}}}};
 }

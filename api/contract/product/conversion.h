@@ -1,4 +1,4 @@
-// The calls that convert settings: from a controller or a schedule to what is typed into a product, and back.
+// The calls that convert settings: from a controller or a schedule to the parameters of a product, and back.
 #pragma once
 
 #include <optional>

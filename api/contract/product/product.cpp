@@ -244,7 +244,7 @@ const Description<product::Algorithm>& algorithm_contract() {
                 "position or velocity.")
             .flag(
                 "published", [](const Algorithm& x) { return x.published; },
-                "false: the rules could not be read and are assumed.")
+                "false: the rules are not documented and are therefore assumed.")
             .number(
                 "sample_time", [](const Algorithm& x) { return x.sample_time_s; }, "Default; null: none.", "s")
             .flag(
@@ -268,7 +268,7 @@ const Description<product::Evidence>& evidence_contract() {
         a.text(
              "level", [](const Evidence& e) { return product::to_string(e.level); },
              "read: form, parameters and units were read in code or the maker's text; partly: in texts of third "
-             "parties, or not completely; unverified.")
+             "parties, or not completely; unverified: no document was available.")
             .texts(
                 "read", [](const Evidence& e) -> const Texts& { return e.read; }, "Facts that were read.")
             .texts(

@@ -256,7 +256,7 @@ const Description<RangeAnswer>& range_result_contract() {
             .field(
                 "version", {}, [](const A&, Writer& out) { out.text(TUNEWRIGHT_VERSION); }, words().schema,
                 "Version of the service.")
-            .field("request_hash", &A::request_hash, words(), "SHA-256 of the request in its canonical spelling.");
+            .field("request_hash", &A::request_hash, words(), "SHA-256 of the request in its canonical form.");
         return d;
     }();
     return description;

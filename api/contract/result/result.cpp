@@ -376,7 +376,7 @@ const Description<ResultAnswer>& result_contract() {
                 "version", {}, [](const ResultAnswer&, Writer& out) { out.text(TUNEWRIGHT_VERSION); }, words().schema,
                 "Version of the service.")
             .field("request_hash", &ResultAnswer::request_hash, words(),
-                   "SHA-256 of the request in its canonical spelling.")
+                   "SHA-256 of the request in its canonical form.")
             .field(
                 "seed", {}, [](const ResultAnswer&, Writer& out) { out.integer(0); }, whole_number,
                 "Seed of random numbers; no method of this version uses any.");

@@ -18,7 +18,7 @@ const Description<verdict::Finding>& finding_contract();
 struct ResultAnswer {
     TuningResult result;
     std::optional<Units> units;  ///< as sent; left out of the answer if none were sent
-    std::string request_hash;    ///< SHA-256 of the request in its canonical spelling, 64 hexadecimal digits
+    std::string request_hash;    ///< SHA-256 of the request in its canonical form, 64 hexadecimal digits
 };
 
 /// The result of a job. An entry whose method found no controller has its `error` instead of the evaluation's members;

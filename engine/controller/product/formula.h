@@ -32,8 +32,8 @@ double solved(const Term& term, const Quantities& quantities, double Quantities:
 double filter_value(const Parameter& parameter, const Quantities& quantities, double clock);
 double filter_time(const Parameter& parameter, const Quantities& quantities, double clock, double value);
 
-/// Tf of a first-order filter with the same delay as the block's slope: (M - 1) Ts/2 for M samples, Ts for four points.
-/// Both add it to the delay of a difference, Ts/2.
+/// Tf of a first-order filter that, together with the Ts/2 of a plain difference, has the delay of the block's slope:
+/// (M - 1) Ts/2 for M samples, Ts for four points.
 double slope_filter_time(double samples, double Ts);
 /// The number of samples of a slope, rounded to a whole number from 1 to a million.
 int whole_samples(double samples);

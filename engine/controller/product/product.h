@@ -102,8 +102,8 @@ struct Parameter {
     double resolution = 0;  ///< step of the values that can be entered; 0: a floating-point number
     /// The maker's default, if known; also the filter's value if the law leaves it undetermined.
     std::optional<Value> standard = {};
-    std::optional<double> off = {};     ///< the value that means: no such part
-    std::string_view zero_remark = "";  ///< the effect of 0 if it does not mean: no such part
+    std::optional<double> off = {};     ///< the value that switches this part off
+    std::string_view zero_remark = "";  ///< the effect of 0 if 0 does not switch the part off
     std::vector<Option> options = {};   ///< the first is the maker's default
     bool compiled_in = false;           ///< can be changed only by building the firmware: a design keeps `standard`
     /// Not set by a design (mode, variant of the block): a design uses the first option, and leaves out other such

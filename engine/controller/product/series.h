@@ -11,8 +11,8 @@ namespace tunewright::product {
 
 struct RatioSeries {
     double Kc = 0, ti = 0, td = 0;
-    /// For complex zeros, which have no series form: gain of P and D of the nearest one's ideal equivalent relative to
-    /// the requested gains.
+    /// For complex zeros, which no series form has: the gains of P and D of the nearest series form, as an ideal
+    /// controller, relative to the requested ones.
     struct Deviation {
         double min_Ti = 0;  ///< 4 Td/(1 - alpha): the least Ti with real zeros
         double proportional = 1, derivative = 1;

@@ -38,8 +38,8 @@ struct Note {
     bool operator==(const Note&) const = default;
 };
 
-/// Says what of the design the product cannot be, or what has to be done beside it; other notes say how the settings
-/// were computed, and what to know about that. By the code alone.
+/// True if the note names a part of the design that the product cannot implement, or something to do in addition; other
+/// notes say how the settings were computed. Decided by the code alone.
 bool tells_deviation(const Note& note);
 
 struct Converted {

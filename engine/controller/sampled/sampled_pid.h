@@ -24,7 +24,7 @@
 //
 // The set point's filter by backward Euler: r_f,k = (T r_f,k-1 + Ts r_k)/(T + Ts) takes the place of r_k. A velocity
 // algorithm adds the increments of the same sum to its last output: within limits the output is the same. Sources:
-// Astrom and Wittenmark, Computer-Controlled Systems (3rd ed. 1997), section 8.5; Astrom and Hagglund, Advanced PID
+// Åström and Wittenmark, Computer-Controlled Systems (3rd ed. 1997), section 8.5; Åström and Hägglund, Advanced PID
 // Control (2006), section 13.3. Slope and four points: the programs that use them (product/).
 #pragma once
 
@@ -54,7 +54,7 @@ struct SampledPid {
     bool trapezoidal_filter = false;  ///< trapezoidal filter of the measurement
 };
 
-/// True if filter of the measurement and derivative are computed together, by the trapezoidal rule.
+/// True if the measurement's filter and the derivative are computed together, by the trapezoidal rule.
 inline bool whole_by_trapezoids(const SampledPid& law) {
     const FilterType type = law.gains.filter.type;
     return law.trapezoidal_filter &&

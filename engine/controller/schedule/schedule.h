@@ -16,7 +16,7 @@ enum class Interpolation {
     linear_in_times,  ///< Kp, Ti and Td are linear between rows
 };
 
-/// The name of it: "steps", "linear_in_gains", "linear_in_times".
+/// Name of the interpolation: "steps", "linear_in_gains", "linear_in_times".
 std::string_view to_string(Interpolation interpolation);
 
 /// The ideal form (controller/pid.h). Tf = 0: no filter.

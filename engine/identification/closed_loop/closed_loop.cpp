@@ -33,11 +33,11 @@ constexpr double kMaxMismatch = 25;                ///< limit of InstrumentFit::
 constexpr double kMinUnknownGainError = 0.5;       ///< standard error over the gain
 constexpr double kMinGainError = 1e-5;             ///< a smaller standard error over the gain is not credible for a
                                                    ///< record of a loop
-constexpr double kMinFitPercentOfSmallError = 99;  ///< per cent: with so good a fit of the free run so small an error
+constexpr double kMinFitPercentOfSmallError = 99;  ///< per cent: with a better fit of the free run such a small error
                                                    ///< is possible
 constexpr double kMinDivisor = 1e-300;             ///< keeps a division by a value near 0 finite
 
-/// The sum of squares that filters of the set point explain of a signal about its mean.
+/// The part of the signal's sum of squares about its mean that filtered set points explain.
 double by_set_point(const std::vector<double>& signal, const SetPointPart& part) {
     const auto n = static_cast<Eigen::Index>(signal.size());
     Eigen::MatrixXd columns(n, static_cast<Eigen::Index>(part.filtered.size()));
@@ -49,7 +49,7 @@ double by_set_point(const std::vector<double>& signal, const SetPointPart& part)
     return (columns * least_squares(columns, values)).squaredNorm();
 }
 
-/// True if the recognised controller would destabilise this plant: static feedback of the positive sign.
+/// True if the recognised controller would destabilise this plant: positive static feedback.
 bool driven_away(const LoopRecord& loop, const Fit& fit) {
     const double K = fit.linear[0] * (fit.form.structure == Structure::unstable ? -1 : 1);
     return K * loop.gain > 0;
@@ -145,7 +145,7 @@ bool answers_at_once(const IdentifiedModel& model) {
     });
 }
 
-/// Standard deviation of u that a straight line over y, of the same row or the next, leaves.
+/// Standard deviation of u about a straight line over y, of the same row or the next.
 double left_by_line(std::span<const double> y, std::span<const double> u) {
     return deviation(residuals(straight_line(y, u), y, u));
 }
@@ -166,7 +166,7 @@ bool is_inverse_of_law(const CleanRecord& record, const IdentifiedModel& model) 
 
 /// A load that the controller answers leaves y at another level with the same u. Where the model rests on the moves of
 /// the set point such a load counts as noise in its standard errors. On 82 simulated loops with loads half of the
-/// models had the warning, and replays of the record with them were as right as with the others.
+/// models had the warning, and replays of the record with them were as accurate as with the others.
 void expect_loads(IdentifiedModel& model) {
     for (Warning& warning : model.warnings) {
         if (warning.code != "contradictory-levels") continue;

@@ -20,7 +20,7 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& record, const Loop
 
 /// For records without found feedback: warns (closed-loop) if u moves irregularly and filters of y explain more of u
 /// than the model explains of y, and the model is doubtful (its gain is unknown) or u clearly moves unlike any test.
-/// This happens in loops whose controller reads another noise than the record contains.
+/// This happens in loops whose controller reads noise that the record does not contain.
 void doubt_open_loop(const CleanRecord& record, IdentifiedModel& model);
 
 /// Fills data_quality.closed_loop and adds warning closed-loop.

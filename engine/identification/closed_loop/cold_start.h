@@ -24,10 +24,9 @@ ColdStart cold_start(const Record& record, const CleanRecord& clean, bool in_loo
 /// Chooses the model for such a record. `estimated`: the model with u0 estimated, or equal to the first row's u;
 /// `from_off`: the model with u at its off level before the first row.
 ///
-/// 1. If the record determines u0 (the gain of `estimated` has a standard error below a tenth of it, and its
-///    residual is not larger than the other's, which does not explain the record as well): `estimated`.
-/// 2. If the residual of `from_off` is not larger: that, with the warning u0-not-recorded; another model that is as
-///    good
+/// 1. If the record determines u0 (the gain of `estimated` has a standard error below a tenth of it, and its residual
+///    is not larger than the other's, which does not explain the record as well): `estimated`.
+/// 2. If the residual of `from_off` is not larger: that, with the warning u0-not-recorded; another equally good model
 ///    becomes one of its alternatives, which a design considers.
 /// 3. Else `estimated`; with that warning, of level bad, if the start is plain.
 Expected<IdentifiedModel> cold_start_model(ColdStart start, Expected<IdentifiedModel> estimated,

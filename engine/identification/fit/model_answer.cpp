@@ -187,7 +187,7 @@ void widen_gain(FittedPlant& plant, double variance) {
     }
 }
 
-/// They take most of the memory of a long record's fits.
+/// The columns take most of the memory of a long record's fits.
 void forget_columns(Fit& fit) {
     fit.J.clear();
     fit.nuisance.clear();

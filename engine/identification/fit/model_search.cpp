@@ -217,7 +217,7 @@ void try_move_times(ModelSearch& search, ModelChoice model, const RunControl& co
         search = std::move(*other);
 }
 
-/// A relay recorded in few rows a half period: each of its switches lies within the row that shows it. Kept if this
+/// A relay recorded in few rows per half period: each of its switches lies within the row that shows it. Kept if this
 /// reduces the sum of squares to two thirds or less.
 void try_switches_between_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
     if (search.percents[static_cast<std::size_t>(search.choice.index)] > k.explained_percent) return;

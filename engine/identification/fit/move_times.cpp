@@ -14,7 +14,8 @@
 namespace tunewright {
 namespace {
 
-/// A change of u whose time is unknown: its place in v_time, the row before it and the row that shows it.
+/// A change of u whose time is unknown: its index in v_time, the time of the row before it and of the row that shows
+/// it.
 struct OpenMove {
     int place = 0;
     double low = 0, high = 0;

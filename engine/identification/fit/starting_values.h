@@ -8,12 +8,12 @@
 
 namespace tunewright {
 
-/// Shapes of `form` worth refining, best first, at most `max`; dimensionless. A coarse scan over the dead time (where
-/// local minima live), the time constants and the time of a load, gain and offset eliminated at every point; the local
-/// minima of the scan are kept. The record should be thinned out (thin_out(), a few hundred samples).
+/// Shapes of `form` worth refining, best first, at most `max`; dimensionless. A coarse scan over the dead time (in
+/// which the local minima lie), the time constants and the time of a load, gain and offset eliminated at every point;
+/// the local minima of the scan are kept. The record should be thinned out (thin_out(), a few hundred samples).
 ///
-/// Empty for the widest structures (third, ipdt_second), and for a load beside a second order: these start only from
-/// fits of simpler structures. A scan that is stopped keeps its results so far.
+/// Empty for the widest structures (third, ipdt_second), and for a load together with a second order: these start only
+/// from fits of simpler structures. A scan that is stopped keeps its results so far.
 ///
 /// Cost: one projection of gain and offset for each point, from a dozen points (ipdt) to some thousand (a lag, a dead
 /// time and the time of a load).

@@ -242,7 +242,7 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
     return p;
 }
 
-/// The covariance of least squares under noise that is not white: (J'J)^-1 J'RJ (J'J)^-1 (Soderstrom and Stoica 1989,
+/// The covariance of least squares under noise that is not white: (J'J)^-1 J'RJ (J'J)^-1 (Söderström and Stoica 1989,
 /// section 4.2). The residual may come from slow noise or from a slowly varying load: with `load` the larger
 /// uncertainty of the gain counts.
 Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& left, const Fit& whole,
@@ -462,7 +462,7 @@ std::optional<PlantShape> shape_of(const CleanRecord& r, const Fit& fit, const P
     return whole ? std::optional(found) : std::nullopt;
 }
 
-/// The sum of squares that a plant leaves, what else moved y fitted anew.
+/// The residual sum of squares of a plant, with everything else that moved y fitted again.
 class Misfit {
 public:
     Misfit(const CleanRecord& record, const Fit& fit) : fit_(fit), stride_(std::max(1, record.samples() / kMaxRows)) {

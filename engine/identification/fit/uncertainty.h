@@ -24,8 +24,8 @@ struct FittedPlant {
 /// Only the plant.
 Plant plant_in_units(const RecordScale& scale, const Fit& fit);
 
-/// Whether the errors include a slowly varying load that was not noticed (load_doubt.h): this costs as much as a fit,
-/// so only for models that may be the result.
+/// Treatment of a slowly varying load that was not noticed (load_doubt.h): to include it in the errors costs as much as
+/// a fit, so this is only for models that may be the result.
 enum class LoadDoubt { counted, left_out };
 
 /// Needs `fit.J`. The covariance uses the noise model of the residual (residual_noise.h), with at least the variance of

@@ -119,7 +119,8 @@ ModelSearch all_structures(const ModelSearch& search, const FitContext& context,
     return ranked_anew(search, context, std::move(fits), model);
 }
 
-/// The same without drift and load if these explain no more than chance in addition to the inputs; else `search`.
+/// The search without drift and load, if these explain no more than chance would in addition to the inputs; else
+/// `search`.
 ModelSearch with_needed_disturbances(ModelSearch search, const FitContext& context, ModelChoice model) {
     constexpr double kMinEvidence = 10;  // of the criterion (Kass and Raftery 1995)
     if (!(search.disturbances.slope || search.disturbances.load) || search.choice.index < 0) return search;

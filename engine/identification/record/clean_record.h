@@ -17,7 +17,7 @@ struct RecordScale {
     double y_origin = 0, y_scale = 1;
 };
 
-/// What was done to the rows, by their numbers: lines of the file, or indices from 0 without a file.
+/// Changes made to the rows, by their numbers: lines of the file, or indices from 0 without a file.
 struct Cleaning {
     bool from_file = false;
     int without_time = 0;                   ///< removed: no time, or no u yet

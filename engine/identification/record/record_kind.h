@@ -1,4 +1,4 @@
-// What kind of test a record shows (one step, several, a relay, anything else), and whether it begins at rest.
+// The kind of test that a record shows (one step, several, a relay, anything else), and its state at the start.
 #pragma once
 
 #include <span>
@@ -26,7 +26,7 @@ std::vector<double> move_times(const CleanRecord& record);
 struct TwoLevels {
     double low = 0, high = 0;         ///< means
     std::vector<double> switch_time;  ///< ascending
-    bool first_is_up = false;         ///< whether switch_time[0] goes to `high`
+    bool first_is_up = false;         ///< true: switch_time[0] goes to `high`
 };
 
 /// switch_time is empty if u does not alternate between two levels.

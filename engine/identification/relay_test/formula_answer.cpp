@@ -70,7 +70,7 @@ void warn_formula(const CleanRecord& r, const RecordedCycle& cycle, const RelayM
     if (chosen.fit_rms > kMinMisfitShare * cycle.y_half + kScatterErrors * scatter) {
         warnings.push_back(
             {"structure-mismatch", "The model reproduces the steady oscillation only within " +
-                                       text(chosen.fit_rms * r.scale.y_scale, 3) + " (r.m.s., of a half swing of " +
+                                       text(chosen.fit_rms * r.scale.y_scale, 3) + " (r.m.s.; the amplitude of y is " +
                                        text(cycle.y_half * r.scale.y_scale, 3) +
                                        "), so the plant does not have this structure. Use only the measured frequency "
                                        "point; " +

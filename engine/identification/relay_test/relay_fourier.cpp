@@ -93,7 +93,8 @@ std::vector<RelayModel> unbiased_models(const RecordedCycle& cycle, Complex shif
     const double omega = cycle.omega(), magnitude = std::abs(shifted);
     auto f = [&](double log_T) { return excess(point, omega, structure, std::exp(log_T), sigma, magnitude); };
     constexpr int kIntervals = 400;                     // two roots of one structure are farther apart than an interval
-    constexpr double kShortest = 1e-4, kLongest = 1e4;  // T omega: beyond them the lag is 0, or an integrator
+    constexpr double kShortest = 1e-4, kLongest = 1e4;  // of T omega: a shorter lag counts as 0, a longer one as an
+                                                        // integrator
     constexpr double kDeadTimeTolerance = 1e-9;         // of the record's length: a dead time that counts as 0
     constexpr double kLogRootTolerance = 1e-14;         // of ln T
     const double low = std::log(kShortest / omega), high = std::log(kLongest / omega);

@@ -5,7 +5,7 @@
 //   Phi = e^(A Ts),  Gamma0 = psi(Ts - delta) B,  Gamma1 = e^(A (Ts - delta)) psi(delta) B,  psi(h) = int_0^h e^(A s)
 //   ds.
 //
-// The program reads y_k just before its output changes, so no output depends on itself. Source: Astrom and Wittenmark,
+// The program reads y_k just before its output changes, so no output depends on itself. Source: Åström and Wittenmark,
 // Computer-Controlled Systems (3rd ed. 1997), section 2.3 (fractional dead times).
 #pragma once
 
@@ -26,7 +26,7 @@ struct UnitCircle {
     std::complex<double> minus_one;       ///< z - 1
 };
 
-/// Largest dead time in sample times: longer ones are no practical loop, and their cost would be unbounded.
+/// Largest dead time in sample times: longer ones do not occur in practice, and their cost would be unbounded.
 inline constexpr int kMaxDelaySamples = 100'000;
 
 /// An error at implement/sample_time if dead time and computation delay together are longer than that.

@@ -31,7 +31,7 @@ public:
     std::complex<double> open_loop(double omega) const;
 
     LoopGrid ends() const;  ///< S = 0 at 0 with an integrator
-    /// Of z and the dead time.
+    /// Turning of z and of the dead time.
     double turning_time() const { return law_.Ts * (plant_.whole_samples() + 1) + plant_.rest(); }
     bool finite_at_zero() const;
 

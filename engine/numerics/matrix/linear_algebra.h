@@ -8,16 +8,16 @@
 
 namespace tunewright {
 
-/// Sum of a_i b_i over the entries of `a`. It uses a plain loop: Eigen's version takes 0 to 10 % longer for up to 6
-/// entries, the usual number in loops.
+/// Sum of a_i b_i over the entries of `a`. A plain loop: Eigen's version takes 0 to 10 % longer for up to 6 entries,
+/// the usual number in loops.
 inline double dot(std::span<const double> a, std::span<const double> b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
     return sum;
 }
 
-/// out = A x, `A` with n columns and as many rows as `out` has entries. It uses a plain loop: Eigen's product takes 1.1
-/// (n = 4) to 1.6 (n = 2) times as long in its fastest form.
+/// out = A x, `A` with n columns and as many rows as `out` has entries. A plain loop: Eigen's product takes 1.1 (n = 4)
+/// to 1.6 (n = 2) times as long in its fastest form.
 inline void multiply(std::span<const double> A, std::span<const double> x, std::span<double> out) {
     const std::size_t n = x.size();
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = dot(x, A.subspan(i * n, n));

@@ -139,7 +139,7 @@ SectionStates states_of(const Section& section) {
     return states;
 }
 
-/// It uses plain loops: with blocks of Eigen a plant takes 2 to 20 % longer to make (orders 1 to 8).
+/// Plain loops: with blocks of Eigen a plant takes 2 to 20 % longer to make (orders 1 to 8).
 void append(Realisation& whole, const SectionStates& part) {
     const int n = whole.n + part.n;
     std::vector<double> A(static_cast<std::size_t>(n * n), 0.0), B(static_cast<std::size_t>(n)),

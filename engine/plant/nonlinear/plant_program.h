@@ -18,11 +18,12 @@ struct PlantProgram {
 ///
 /// Errors: the first one found, invalid_argument with `where` =
 ///   "plant/states/T", "plant/parameters/k", "plant/input", "plant/input/nominal", "plant/input/min", "plant/L": a name
-///       that is none or is taken, a number that is not finite, an empty range of the input, no or too many states;
-///   "plant/parameters/k": a text that is no expression, a name that is no parameter, a circle (which the message
-///       names), a value that is not finite;
+///       that is not valid or already used, a number that is not finite, an empty range of the input, no or too many
+///       states;
+///   "plant/parameters/k": a text that is not an expression, a name that is not a parameter, a circle (which the
+///       message names), a value that is not finite;
 ///   "plant/equations", "plant/equations/T": a state without an equation or with two, an equation without a state, a
-///       text that is no expression (with its place), an unknown name;
+///       text that is not an expression (with its place), an unknown name;
 ///   "plant/output": the same of the output; an output that contains the input, or no state.
 /// NonlinearSystem::make checks whether the equations can be evaluated at the states.
 Expected<PlantProgram> compile_plant(const NonlinearPlant& plant);

@@ -112,7 +112,7 @@ bool opposed(const LogRatios& a, const LogRatios& b) {
     return false;
 }
 
-/// True if it lies between its nominal plant and the other member.
+/// True if `a` lies between its nominal plant and the other member, `b`.
 bool inside(const LogRatios& a, const LogRatios& b) {
     for (std::size_t i = 0; i < a.size(); ++i)
         if (std::abs(a[i]) > std::abs(b[i])) return false;

@@ -5,7 +5,7 @@
 namespace tunewright::range {
 namespace {
 
-/// 1/Tt of the anti-windup: Tt = sqrt(Ti Td), Ti without derivative (Astrom and Hagglund 2006, section 3.5).
+/// 1/Tt of the anti-windup: Tt = sqrt(Ti Td), Ti without derivative (Åström and Hägglund 2006, section 3.5).
 double law_tracking_rate(const IdealPid& pid) { return 1 / (pid.Td > 0 ? std::sqrt(pid.Ti * pid.Td) : pid.Ti); }
 
 bool filters(const IdealPid& pid) { return pid.filter.type != FilterType::none; }

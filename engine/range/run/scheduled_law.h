@@ -27,7 +27,7 @@ public:
     void rates(const IdealPid& pid, double r, double r_slope, double y, double excess, std::span<const double> s,
                std::span<double> ds) const;
 
-    /// True if the row is left at this value.
+    /// True if the schedule changes to another row at this value of the scheduling variable.
     bool leaves_row(double place) const {
         return schedule_.interpolation == Interpolation::steps && row_after(schedule_, row_, place) != row_;
     }

@@ -53,7 +53,7 @@ verdict::Finding finding_of(const RangeDesign& design) {
     return draft;
 }
 
-/// Of a schedule that was given: whether it holds the limits, and what it costs.
+/// The finding on a schedule that was given: if it keeps the limits, and its cost.
 verdict::Finding finding_of_given(const range::ScheduleDesign& given) {
     using verdict::FindingBuilder, verdict::Level;
     const bool one = given.schedule.rows.size() == 1;

@@ -63,7 +63,8 @@ struct RangeResult {
     double low = 0, high = 0;
     std::vector<RangePointPlant> points;
     range::RangeDesign design;
-    bool given = false;              ///< the schedule was given: no one setting; the verdict is on the schedule
+    bool given = false;              ///< true: the schedule was given, so there is no one setting, and the verdict is
+                                     ///< on the schedule
     std::vector<RangePlace> places;  ///< at the points of the curves
     std::vector<RangePassage> runs;
     std::optional<verdict::Finding> verdict;

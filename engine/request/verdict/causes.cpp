@@ -54,7 +54,7 @@ OptionalFinding dead_time_rules(const VerdictInput& c) {
     const LinearPlant* plant = c.context.subject.linear();
     if (plant == nullptr || plant->integrators() != 0 || plant->unstable_poles() > 0) return {};
     const double L = plant->dead_time();
-    // The sum of the lags is no measure of an oscillating plant: an undamped resonance has none.
+    // The sum of the lags does not measure an oscillating plant: an undamped resonance has none.
     const double lags = std::max(plant->lag_sum(), plant->time_scale() - L);
     const bool alone = plant->poles().empty();
     if (!(L > 0) || (!alone && !(lags > 0 && L >= kMinDeadTimeOverLags * lags))) return {};
@@ -164,9 +164,9 @@ OptionalFinding noise(const VerdictInput& c) {
     }
     if (!r.Mks || !(Kp > 0) || *r.Mks < kMinNoisyMksOverKp * Kp || !noise_gain_peaks_beyond(c)) return {};
     FindingBuilder draft("noise-gain", Level::warning);
-    draft.say("Measurement noise reaches the controller output amplified up to ")
+    draft.say("The controller amplifies measurement noise up to ")
         .number("ratio", *r.Mks / Kp)
-        .say(" times as much as by the proportional gain (Mks ")
+        .say(" times as much as its proportional gain does (Mks ")
         .number("Mks", *r.Mks, quotient_unit(labels.u, labels.y))
         .say(").");
     if (const auto pid = to_ideal(c.evaluation.controller); pid && pid->filter.type != FilterType::none)

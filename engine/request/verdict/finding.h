@@ -27,8 +27,8 @@ struct Labels {
     std::string time = "s", u, y;
 };
 
-/// Which steps of an evaluation the request sets. If a step's size was only assumed, an actuator that is too small for
-/// it is no fault of the loop.
+/// The steps of an evaluation that the request sets. If a step's size was only assumed, an actuator that is too small
+/// for it is not a fault of the loop.
 struct GivenSteps {
     bool setpoint = false, load = false;
 };

@@ -66,7 +66,7 @@ OptionalFinding active_limit(const VerdictInput& c);  ///< which limit stops the
 OptionalFinding all_members(const VerdictInput& c);   ///< the worst of several plants
 OptionalFinding margins(const VerdictInput& c);  ///< how much gain or dead time may grow before the loop oscillates
 OptionalFinding nonlinear_margins(const VerdictInput& c);  ///< the meaning of margins in a nonlinear loop
-OptionalFinding large_errors(const VerdictInput& c);       ///< whether large errors decay under the nonlinear integral
+OptionalFinding large_errors(const VerdictInput& c);       ///< the decay of large errors under the nonlinear integral
 
 // responses.cpp
 OptionalFinding load_error(const VerdictInput& c);            ///< IAE of the load step, compared with today's

@@ -34,7 +34,7 @@ inline constexpr double kOvershootAbove = 0.05, kOvershootFarAbove = 100 * kSett
 
 // Against today's settings
 
-inline constexpr double kMaxNegligibleRatio = 1.15;  ///< ratios from 1/1.15 to 1.15 are no difference
+inline constexpr double kMaxNegligibleRatio = 1.15;  ///< ratios from 1/1.15 to 1.15 do not count as a difference
 inline constexpr double kMaxIaeOverToday =
     0.95;  ///< share of today's load IAE: a smaller one makes a change worthwhile
 inline constexpr double kMinRatioMovesMore = 1.5;  ///< multiple of today's movement of u
@@ -50,7 +50,7 @@ inline constexpr double kMinNoisyMksOverKp = 20;      ///< Mks/|Kp|: beyond the 
 inline constexpr double kUsualN = 10;               ///< Td/Tf of the filter that is tried for a derivative without one
 inline constexpr double kMinNoiseOverRange = 0.02;  ///< standard deviation of u over the actuator's range
 
-// Which to take
+// Choice of an entry
 
 /// A controller whose load IAE is more than this multiple of that of another one is not chosen, if both keep the
 /// limits, whatever its level: a step from Ms 2 down to 1.4 costs less.

@@ -26,7 +26,8 @@ constexpr double kAtRest = 0.02;               // multiple of the slowest mode's
 constexpr double kMaxTimes = 60;               // multiple of the plant's own time in which a stable plant must settle
 constexpr double kRampTimes = 12;              // multiple of dead time and lags: length of an integrating plant's test
 constexpr double kGrowthTimes = 3;             // multiple of an unstable mode's time constant
-constexpr double kMaxRelativeRealPart = 1e-7;  // relative to the fastest pole: below it a pole is an integrator
+constexpr double kMaxRelativeRealPart = 1e-7;  // relative to the fastest pole: a pole with a smaller real part counts
+                                               // as an integrator
 constexpr double kMinMovement = 1e-12;
 
 /// Times of the plant's modes that decide the length of a step test.

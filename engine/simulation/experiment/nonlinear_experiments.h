@@ -25,11 +25,11 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
 /// From the operating point until periods and swings repeat to 1e-6, at least six: some thousand rows at equal
 /// distances and at every switch. The relay switches at the time of crossing; amplitude and hysteresis are deviations
 /// (relay.h). Errors: unsupported if there is no oscillation (without dead time a hysteresis is needed; if y reverses
-/// at once at it there is no Ku) or the states leave the model's domain; cancelled.
+/// at once at it there is no Ku) or if the states leave the model's domain; cancelled.
 struct NonlinearRelayTest {
     RelayRecord record;
     double Pu = 0,
-           Ku = 0;  ///< of the last period; Ku = 4 d/(pi sqrt(a^2 - hysteresis^2)) (Astrom & Hagglund 1984), > 0
+           Ku = 0;  ///< of the last period; Ku = 4 d/(pi sqrt(a^2 - hysteresis^2)) (Åström & Hägglund 1984), > 0
     bool reversed = false;  ///< the relay acts on -y: the plant's gain is negative
 };
 Expected<NonlinearRelayTest> simulate_relay_test(const NonlinearSystem& system, double amplitude, double hysteresis,

@@ -4,7 +4,7 @@
 //                 ^                                 |     ^ d
 //                 +------- (u - command)/Tt --------+
 //
-// Back-calculation (Astrom and Hagglund, Advanced PID Control, 2006, section 3.5): while the command is beyond a limit
+// Back-calculation (Åström and Hägglund, Advanced PID Control, 2006, section 3.5): while the command is beyond a limit
 // the integral part changes by (u - command)/Tt on top of Ki (r - y_f), so it follows the actuator. Without integral
 // action nothing winds up. The load is added after the limits.
 //

@@ -18,8 +18,8 @@ struct SteadyState {
     bool at_limit = false;
 };
 
-/// Of the loop without limits: 0 = F x + G v + H r, v = M x + N v + R r + d. It does not exist where these equations
-/// have no single solution.
+/// The rest of the loop without limits: 0 = F x + G v + H r, v = M x + N v + R r + d. It does not exist where these
+/// equations have no single solution.
 SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs);
 
 /// The same; with integral action in closed form, from y = r and the plant's static gain, for thousands of runs.

@@ -33,7 +33,7 @@ struct Durations {
     double t_plus = 0, t_minus = 0;
 };
 
-// The data on the switches for Newton's method.
+// Data on a cycle that Newton's method needs.
 struct Switching {
     bool minus_at_jump = false, plus_at_jump = false;  ///< true: y jumps over the threshold instead of crossing it
 };

@@ -28,7 +28,7 @@ private:
     std::array<double, 6> c_{};
 };
 
-/// Its steps as a relay needs them: as long as the modes that are still alive allow.
+/// The motion with the step lengths that a relay needs: as long as the modes that have not decayed allow.
 class RelayMotion : public HeldMotion {
 public:
     /// `direction` is 1 or -1.

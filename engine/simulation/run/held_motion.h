@@ -1,4 +1,4 @@
-// How a linear plant moves while its input is held: matrix exponentials, no discretisation error.
+// The motion of a linear plant while its input is held: matrix exponentials, no discretisation error.
 #pragma once
 
 #include <vector>
@@ -22,7 +22,7 @@ struct HeldStep {
 /// x' = A x + B v, y = direction (C x + D v). The dead time is the caller's: v is what arrives.
 class HeldMotion {
 public:
-    /// `direction` is 1 or -1. With the integral of y as a last state, where that is asked for.
+    /// `direction` is 1 or -1. The integral of y is a last state if it is requested.
     HeldMotion(const LinearPlant& plant, double direction, bool with_integral);
 
     int states() const { return n_; }

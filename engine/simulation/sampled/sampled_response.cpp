@@ -21,12 +21,13 @@ using Index = std::size_t;
 
 constexpr int kMaxHalvings = 12;            // of a piece, before a node is added without a further check
 constexpr Index kMaxNodes = 1000000;        // beyond it no piece is halved any more
-constexpr double kProbeShare = 0.309;       // of a piece: where swings that the middle meets at the same place are not
+constexpr double kProbeShare = 0.309;       // of a piece: a second check at this point notices oscillations of which
+                                            // the midpoint shows nothing
 constexpr double kInstantTolerance = 1e-9;  // of a sample: closer times are equal
 constexpr int kRestSamples = 10;            // in addition to the dead time: the least time that a response must have
                                             // rested
 
-/// Where the loop rests without the limits of the program.
+/// The rest of the loop without the limits of the program.
 SteadyState rest_of(const LinearPlant& plant, const ParallelPid& gains, const StepInputs& in) {
     const double gain = plant.low_frequency_gain();
     const int integrators = plant.integrators();
@@ -43,7 +44,7 @@ struct Piece {
     double from = 0;                     // start within the period
     std::vector<HeldStep> whole, probe;  // the latter up to kProbeShare of it
     bool arrived;                        // u_{k-d} drives the plant here; before it u_{k-d-1}
-    bool given;  // true: the output is u_{k-o}, o whole samples of the computation delay; false: u_{k-o-1}
+    bool given;  // true: the output is u_{k-o}, with o whole samples of computation delay; false: it is u_{k-o-1}
 };
 
 class SampledRun {
@@ -204,7 +205,7 @@ void SampledRun::note(double t) {
 
 StepResponse SampledRun::result() {
     response_.settles = false;
-    // At least one period, so that a response that is stopped at once has a beginning.
+    // Takes at least one period, so that a response that is stopped at once has a first point.
     for (int k = 0; k < options_.max_samples && (k == 0 || !options_.stop.stop_requested()); ++k) {
         sample(k);
         run_period(k);

@@ -281,7 +281,7 @@ TuningMethod arrieta_degradation_method() {
     method.formula =
         std::string(kFormula) +
         "a1 to c3 from Table 2 for degradation 0, 0.25, 0.35, 0.45 and 0.55; exact: from equation 9 with the Ms "
-        "for which 1 - J_free/J_rd on the modelequals the requested degradation, where J_free is J_rd of Ms free";
+        "for which 1 - J_free/J_rd on the model equals the requested degradation, where J_free is J_rd of Ms free";
     method.source = std::string(kSource) + "Eqs. 5-11, Table 2";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.1 to 2, degradation up to 0.55";

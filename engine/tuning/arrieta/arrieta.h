@@ -16,7 +16,8 @@ struct ArrietaMsOptions {
 
 struct ArrietaDegradationOptions {
     double degradation = 0.35;
-    std::optional<bool> exact = {};  ///< solve on the model; false: only the table; empty: the table at its levels
+    std::optional<bool> exact = {};  ///< true: solve on the model; false: use Table 2 only; empty: Table 2 at its
+                                     ///< levels, the model elsewhere
     bool profile = false;
     ReductionOptions reduction = {};
 };

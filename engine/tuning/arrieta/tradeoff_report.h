@@ -15,7 +15,7 @@
 
 namespace tunewright {
 
-/// What the servo/regulation rule reports on its controller.
+/// The report of the servo/regulation rule on its controller.
 struct ArrietaSettings {
     Fopdt model;                        ///< the model that the rule used
     std::string constants;              ///< origin of its constants: table and column, or equation

@@ -22,7 +22,7 @@ std::vector<double> frequencies_of(const LinearPlant& plant, const Law& law);
 
 bool is_stable(const LinearPlant& plant, const Law& law);
 
-/// Of |S|, |T| and |C S|, each to 1e-8; empty where the loop is not stable.
+/// Peaks of |S|, |T| and |C S|, each to 1e-8; empty where the loop is not stable.
 std::optional<Peaks> stable_peaks(const LinearPlant& plant, const Law& law);
 
 /// The largest relative excess over a limit; infinite where the loop is not stable.

@@ -251,7 +251,7 @@ void Settling::settle_at(Shape shape, const Settings& start) {
     if (found && found->load_IAE < min_) settle({std::move(shape), *found});
 }
 
-// Uses the smallest sufficient margin for the rounding: a margin costs a multiple of itself.
+// Uses the smallest sufficient margin for the rounding: the load IAE rises by a multiple of the margin.
 void Settling::type(Numbers near) {
     const double designed = near.found.load_IAE;
     for (const double margin : kMargins) {

@@ -4,7 +4,7 @@
 //   L = k G, k > 0:   |1 + k G| >= 1/Ms,   |k G| <= Mt |1 + k G|,   |k C1| <= Mks |1 + k G|
 //
 // Each is a quadratic in k. A gain is allowed if no frequency forbids it and the loop is stable; the result is the
-// upper end of the stable gap with the largest gains. Source: Garpinger and Hagglund, Control Engineering Practice 16
+// upper end of the stable gap with the largest gains. Source: Garpinger and Hägglund, Control Engineering Practice 16
 // (2008) 1301-1309, section 3 (circles), solved per frequency instead of by iteration.
 #pragma once
 

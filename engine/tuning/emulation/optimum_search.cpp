@@ -39,7 +39,8 @@ constexpr double kMinStartDistance = 0.05;       // between two of them, in a un
 constexpr int kMaxPolishSteps = 25;
 constexpr double kDifference = 1e-4;        // of a derivative, relative to the unknown
 constexpr double kMinExpectedFall = 1e-10;  // expected decrease of J, relative, at which a local search ends
-// J ends as flat as `kMinExpectedFall` with few runs; a simulation is dear: damped more, its steps are not worth one.
+// A simulation is expensive, and few of them reach `kMinExpectedFall`: with more damping a step gains less than its
+// simulations cost.
 constexpr optimise::MarquardtDamping kDamping = {.max = 1e8, .ease = 10, .tighten = 10};
 constexpr double kMaxConfidentDamping = 10;  // damping up to which a small expected decrease means that J is flat
 constexpr double kMaxPolishStep = 0.5;       // relative to the unknown

@@ -17,8 +17,8 @@ struct Optimum {
 };
 
 /// The least J within `bounds`: DIRECT over the box (NLopt) and `starts`, the best of them refined by bounded
-/// Levenberg-Marquardt steps, then by NLopt's subplex if these end before J is flat. Empty: stopped before anything was
-/// tried.
+/// Levenberg-Marquardt steps, then by NLopt's subplex if these end before a minimum. Empty: stopped before the first
+/// evaluation.
 std::optional<Optimum> find_optimum(const Criterion& criterion, const Bounds& bounds,
                                     const std::vector<SettingsPoint>& starts, const RunControl& control);
 

@@ -1,4 +1,4 @@
-// A method's own report. Each kind is a type in the method's folder; the interface encodes it by its type.
+// Report that one method adds to its result. Each kind is a type in the method's folder; api encodes it by its type.
 #pragma once
 
 #include <memory>

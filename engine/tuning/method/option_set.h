@@ -49,7 +49,7 @@ constexpr OptionType option_type() {
     return std::is_same_v<M, std::map<std::string, double>> ? OptionType::numbers_by_name : OptionType::number;
 }
 
-/// Fills the member with what is given at `path`; false: nothing is.
+/// Fills the member with the value given at `path`; false: none is given.
 bool take(const MethodOptions& given, const std::string& path, double& member);
 bool take(const MethodOptions& given, const std::string& path, int& member);
 bool take(const MethodOptions& given, const std::string& path, bool& member);
@@ -66,7 +66,7 @@ bool take(const MethodOptions& given, const std::string& path, std::optional<M>&
     return true;
 }
 
-/// What a request gives for a member that holds a number or a truth value; nothing for others.
+/// The value that a request gives for a member with a number or a truth value; empty for other members.
 template <class M>
 std::optional<OptionValue> as_given(const M& member) {
     const auto* value = content(member);
@@ -81,20 +81,21 @@ std::optional<OptionValue> as_given(const M& member) {
 
 }  // namespace detail
 
-/// Described options whatever struct they fill: what OptionSet offers for each struct, compiled once for all.
+/// The part of OptionSet that does not depend on the type of the struct, so that it is compiled once.
 class OptionList {
 public:
     const std::vector<OptionDescription>& descriptions() const { return descriptions_; }
 
-    /// The description at this path ("Ms", "filter/Tf"), which there must be; good until the next option.
+    /// The description at this path ("Ms", "filter/Tf"), which must exist; valid until the next option is added.
     OptionDescription& described(std::string_view path);
 
-    /// Fills the struct at `value`, of the type that the members are of, where `given` says something.
+    /// Fills the members of the struct at `value` for which `given` has a value.
     void read(const MethodOptions& given, const std::string& prefix, void* value) const;
-    /// What a request gives for the struct at `value` so that it differs from the one at `other`.
+    /// The options with which a request gets the struct at `value` instead of the one at `other`.
     MethodOptions given_for(const void* value, const void* other) const;
 
-    /// The next option, in a member of type M; `take` fills it, and `as_given` says what a request gives for it.
+    /// The next option, in a member of type M; `take` fills it, and `as_given` returns the value that a request gives
+    /// for it.
     template <class M, class Take, class AsGiven>
     void add(OptionDescription option, std::ptrdiff_t offset, Take take, AsGiven as_given) {
         bindings_.push_back(
@@ -273,7 +274,7 @@ public:
         return *this;
     }
 
-    /// From each option of these names follows `other`, which is then not given.
+    /// Each of these options determines `other`; a request must not give both.
     OptionSet& in_place_of(std::string_view other, std::initializer_list<std::string_view> names) {
         for (const std::string_view name : names) list_.described(name).in_place_of = other;
         return *this;

@@ -66,15 +66,15 @@ struct OptionDescription : NumberRule {
     std::optional<OptionSlider> slider = {};  ///< of a number that makes sense to be moved
 };
 
-/// What a number must keep, and its unit ("time", "u/y", ...).
+/// The limits of a number, and its unit ("time", "u/y", ...).
 struct NumberOption {
     std::string_view unit = {};
     std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {};
     bool required = false;
-    std::optional<double> fallback = {};  ///< what an empty member stands for, where that is one number
+    std::optional<double> fallback = {};  ///< the number that an empty member stands for, if it is a number
 };
 
-/// An option with a default of `preset`, unless it is required, else of the number's fallback.
+/// An option with the default `preset`, unless it is required; without a preset the default is the number's fallback.
 OptionDescription described_option(OptionType type, std::string_view name, std::string_view sentence,
                                    const NumberOption& how = {}, std::optional<OptionValue> preset = {});
 

@@ -214,7 +214,7 @@ void settle_weight(device::Fitted& fitted, const device::DeviceModel& device, co
     wished.setpoint_lag = twin.controller.setpoint_lag;
     auto again = device::fit(device, wished);
     if (again && std::abs(again->controller.b - wished.b) > kFixedWeight) {
-        // A weight that cannot be set is fixed by the block and is no difference from the design.
+        // A weight that cannot be set is fixed by the block and does not count as a difference from the design.
         wished.b = again->controller.b;
         again = device::fit(device, wished);
     }

@@ -42,7 +42,7 @@ SetpointOptions wanted_setpoint(const TuningMethod& method, MethodOptions& given
 ///   the b with the least overshoot; in the latter case a warning says so. The response is affine in b, so its largest
 ///   value and its IAE are convex in b, and the b that keep a limit form an interval. An IAE is the least to 0.3 %.
 /// - best_IAE: the b with the least IAE. Weights need integral action and a stable loop; otherwise the controller is
-///   not changed and a warning says so. Source: Astrom and Hagglund, Advanced PID Control (2006), section 5.3.
+///   not changed and a warning says so. Source: Åström and Hägglund, Advanced PID Control (2006), section 5.3.
 std::vector<Warning> choose_setpoint(const LinearPlant& plant, const SetpointOptions& options, IdealPid& pid);
 
 /// The same for a method's answer; its remarks are added to the answer's.

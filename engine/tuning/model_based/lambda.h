@@ -23,8 +23,8 @@ struct LambdaOptions {
 ///
 /// PID filter: derivative, Tf = Td/10.
 ///
-/// Sources: Rivera, Morari & Skogestad, Ind. Eng. Chem. Process Des. Dev. 25 (1986) 252-265, Table II; Astrom &
-/// Hagglund (2006), Section 6.5; integrating, and lambda = sqrt(10) L there: Chien & Fruehauf, Chem. Eng. Prog. 86
+/// Sources: Rivera, Morari & Skogestad, Ind. Eng. Chem. Process Des. Dev. 25 (1986) 252-265, Table II; Åström &
+/// Hägglund (2006), Section 6.5; integrating, and lambda = sqrt(10) L there: Chien & Fruehauf, Chem. Eng. Prog. 86
 /// (1990) 33-41.
 TuningMethod lambda_method();
 

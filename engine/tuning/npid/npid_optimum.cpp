@@ -39,7 +39,7 @@ constexpr double kLogBoundTolerance = 1e-9;                    // in ln: a point
 constexpr double kRoughTolerance = 1e-4, kFineTolerance = 1e-6;
 constexpr double kSettledOfTolerance = 0.01;
 constexpr double kMaxLogBoundDistance = 1e-3;  // in ln
-constexpr int kMaxSteps = 4000;                // of a response; one that has not settled by then is no candidate
+constexpr int kMaxSteps = 4000;                // of a response; one that has not settled by then is not a candidate
 
 class NpidSearch {
 public:
@@ -169,7 +169,7 @@ private:
         const double scale = problem_.criterion == ErrorCriterion::ITAE ? time_ * time_ : time_;
         optimum.cost = scale * std::exp(best_.value);
         optimum.stopped = stopped_;
-        // At the lower bound of Td it is a PI, which is a proper result.
+        // At the lower bound of Td it is a PI, which is a valid result.
         for (std::size_t i = 0; i < best_.x.size(); ++i)
             if ((i < 2 && best_.x[i] < box_.low[i] + kMaxLogBoundDistance) ||
                 best_.x[i] > box_.high[i] - kMaxLogBoundDistance)

@@ -25,8 +25,8 @@ struct AmigoOptions {
 /// PID: set-point weight b = 0 for L/(L + T) <= 0.5, else 1; PI: b = 1. PID filter: measurement_second_order, Tf =
 /// Td/10.
 ///
-/// Sources: PI: Hagglund & Astrom, Asian J. Control 4 (2002); PID: Hagglund & Astrom, J. Process Control 14 (2004),
-/// Eqs. 12-15; both: Astrom & Hagglund, Advanced PID Control (2006), Section 7.
+/// Sources: PI: Hägglund & Åström, Asian J. Control 4 (2002); PID: Hägglund & Åström, J. Process Control 14 (2004),
+/// Eqs. 12-15; both: Åström & Hägglund, Advanced PID Control (2006), Section 7.
 TuningMethod amigo_method();
 
 /// The same without a request. Errors: those of reduce(); unsupported for L = 0.

@@ -25,7 +25,7 @@ struct ChienHronesReswickOptions {
 /// The regulation settings need only a and L and also apply to integrating plants with a = K L; the servo PI and PID
 /// need T. T of a plant of other form is static gain over steepest slope.
 ///
-/// Source: Chien, Hrones & Reswick, Trans. ASME 74 (1952) 175-185, constants as rounded by Astrom & Hagglund (1995).
+/// Source: Chien, Hrones & Reswick, Trans. ASME 74 (1952) 175-185, constants as rounded by Åström & Hägglund (1995).
 TuningMethod chien_hrones_reswick_method();
 
 }  // namespace tunewright

@@ -23,7 +23,7 @@ struct KappaTauOptions {
 ///
 /// Errors: those of tune_first_order(). Warns `outside-validity` for L/T outside 0.1 to 4, with PID outside 0.4 to 4.
 ///
-/// Source: Astrom & Hagglund, PID Controllers: Theory, Design, and Tuning (1995), section 5.3, tables for stable
+/// Source: Åström & Hägglund, PID Controllers: Theory, Design, and Tuning (1995), section 5.3, tables for stable
 /// processes.
 TuningMethod kappa_tau_method();
 

@@ -24,7 +24,7 @@ struct RimcOptions {
 
 /// A filter zero in the closed loop T = (beta s + 1) e^(-theta s)/(lambda s + 1)^2 is placed so that 1 - T cancels the
 /// model's slow pole; the controller's Maclaurin series gives the PID. One parameter: lambda, or in its place the
-/// figure that it shall give: Ms, the load response's peak, or a dead-time error by Eq. 29, each for the returned PID
+/// figure that it must give: Ms, the load response's peak, or a dead-time error by Eq. 29, each for the returned PID
 /// with its filter on the model.
 ///
 /// Source: Liu and Gao, "Relay-based autotuning of PID controller for improved load disturbance rejection", IFAC World

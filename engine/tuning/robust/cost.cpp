@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSettledTolerance = 1e-4;   // the tail after it is known from the exact integral of the error
 constexpr double kLogDifferenceStep = 1e-5;  // of a logarithm: error by noise 1e-13/1e-5, by curvature 1e-5
-constexpr int kMaxSteps = 12000;             // a design that needs more steps is no candidate
+constexpr int kMaxSteps = 12000;             // a design that needs more steps is not a candidate
 
 constexpr std::array<double, 3> kOfIntegratedError = {-1, 1, 0};  // of ln(Ti/Kp)
 

@@ -1,4 +1,4 @@
-// Whether a robust design exists: the least possible common value of Ms and Mt, whether the optimum is finite, and the
+// The existence of a robust design: the least possible common value of Ms and Mt, if the optimum is finite, and the
 // error if there is no design.
 #pragma once
 

@@ -132,7 +132,7 @@ TuningMethod frontier_method() {
     method.title = "Front of robust optima";
     method.formula =
         "for each limit M: minimise the integral of |e| after a load step subject to max |S| <= M, max |T| <= Mt";
-    method.source = "Garpinger and Hagglund (2008), A software tool for robust PID design, IFAC World Congress";
+    method.source = "Garpinger and Hägglund (2008), A software tool for robust PID design, IFAC World Congress";
     method.needs = "any linear plant";
     method.validity = "as the method robust";
     method.bind(frontier_options(), tune_frontier);

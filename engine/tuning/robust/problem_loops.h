@@ -6,7 +6,7 @@
 
 namespace tunewright::robust {
 
-/// Whether `test` holds for all of them; it is called with an Expected<Loop> or an Expected<MeasuredLoop>.
+/// True if `test` holds for all of them; it is called with an Expected<Loop> or an Expected<MeasuredLoop>.
 template <class Test>
 bool holds_on_every_loop(const DesignProblem& problem, const ParallelPid& gains, Test test) {
     if (problem.measured != nullptr) return test(MeasuredLoop::make(*problem.measured, gains));

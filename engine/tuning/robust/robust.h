@@ -1,4 +1,4 @@
-// Robust design: the least IAE of a load step within limits on Ms and Mt (Garpinger and Hagglund 2008).
+// Robust design: the least IAE of a load step within limits on Ms and Mt (Garpinger and Hägglund 2008).
 
 #pragma once
 

@@ -282,7 +282,7 @@ namespace {
 /// Constants of the paper's searches in the (Ti, Td) plane.
 struct PlaneSearchConstants {
     double simulation_tolerance = 1e-4;
-    double simplex_corner = 0.4;  ///< corner of the simplex relative to the first one (Garpinger and Hagglund 2008,
+    double simplex_corner = 0.4;  ///< corner of the simplex relative to the first one (Garpinger and Hägglund 2008,
                                   ///< section 4.2)
     int grid_points = 25;         ///< a side
     double grid_reach = 3;        ///< in ln: a factor of 20 to either side
@@ -293,7 +293,7 @@ struct PlaneSearchConstants {
     double min_slope = 1e-3;       ///< of a peak over ln Kp: a flatter one is not moved by the gain
     double aim_below = 1e-8;       ///< in ln of a peak: aims inside the limit
     double min_step = 1e-10;       ///< of ln Kp: changes nothing any more
-    double max_step = 0.1;         ///< in ln Kp: a longer step leaves the gap's end
+    double max_step = 0.1;         ///< in ln Kp: a longer step would leave the neighbourhood of the interval's end
     double no_Td = 1e-300;         ///< in place of Td = 0, because its logarithm does not exist
 };
 constexpr PlaneSearchConstants kPlane;

@@ -3,7 +3,7 @@
 //  1. Scan (Ti, Td) for the largest gain with a stable loop within the limits: the usual box, and if it has none
 //     the slow and the close one (starts.h).
 //  2. Start from the cheapest of the points with the least integrated error and of its optimum, which needs no runs
-//     (Garpinger and Hagglund 2008; Hast et al. 2013); run sequential quadratic programming from there (sqp.h).
+//     (Garpinger and Hägglund 2008; Hast et al. 2013); run sequential quadratic programming from there (sqp.h).
 //  3. PID: compare a run that ended at a short Td with a PI and with a run from the cheapest point with a long Td.
 //  4. PID: search further local minima. With a limit on Mks, from the cheapest point of each Td; with a set-point step,
 //  from long
@@ -16,7 +16,7 @@
 //
 // The result is the cheapest design. The other searches are those of the paper, Nelder-Mead and gridding over (Ti, Td):
 // Kp is eliminated as the cheapest gain within the limits, at an end of a gap between the forbidden gains (Garpinger
-// and Hagglund 2008, Eq. 6).
+// and Hägglund 2008, Eq. 6).
 #pragma once
 
 #include <optional>
@@ -33,7 +33,7 @@ std::optional<DesignResult> fast_search(const Sweep& sweep, const DesignProblem&
 /// True if a pair of poles is damped so little that there may be several local minima.
 bool is_resonant(const LinearPlant& plant);
 
-/// Nelder-Mead from a simplex with corners (Ti, Td), (0.4 Ti, Td), (Ti, 0.4 Td) (Garpinger and Hagglund 2008,
+/// Nelder-Mead from a simplex with corners (Ti, Td), (0.4 Ti, Td), (Ti, 0.4 Td) (Garpinger and Hägglund 2008,
 /// section 4.2).
 std::optional<DesignResult> nelder_mead_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
                                                const Report& report);

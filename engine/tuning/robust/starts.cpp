@@ -28,7 +28,7 @@ void consider(Candidate& best, const DesignProblem& problem, const ScanPoint& po
     if (cost < best.log_cost) best = {point.x, cost, true};
 }
 
-/// The least integrated error Ti/Kp needs only sweeps, and is often close to the optimum (Garpinger and Hagglund 2008;
+/// The least integrated error Ti/Kp needs only sweeps, and is often close to the optimum (Garpinger and Hägglund 2008;
 /// Hast et al. 2013).
 ScanPoint min_integrated_error(const Sweep& sweep, DesignProblem problem, const ScanPoint& start) {
     problem.objective = Objective::load_ie;
@@ -109,7 +109,7 @@ bool is_open(const GainGap& gap) {
     return std::isfinite(gap.upper) && gap.upper > gap.lower * (1 + kRelativeInset) && gap.stable != false;
 }
 
-/// Whether the loop is verified as stable between a gap's ends; empty: there is no design.
+/// True if the loop is verified as stable between a gap's ends; empty: there is no design.
 std::optional<bool> usable(const DesignProblem& problem, const GainGap& gap, double Ti, double Td, Stability wanted) {
     if (!is_open(gap)) return std::nullopt;
     if (gap.verified || (wanted == Stability::inferred && gap.stable)) return gap.verified;

@@ -17,8 +17,8 @@ struct ScanPoint {
     bool verified = false;  ///< true: the loop's stability is verified, not only inferred from the sweep's grid
 };
 
-/// How the stability of a loop is known: inferred from the encirclements of -1 on the sweep's grid, if it shows them;
-/// or verified by an exact count.
+/// Knowledge of a loop's stability: inferred from the encirclements of -1 on the sweep's grid, if it shows them; or
+/// verified by an exact count.
 enum class Stability { inferred, verified };
 
 /// A gain at the end of a gap.

@@ -23,7 +23,7 @@ struct AmigoUltimateOptions {
 /// `outside-validity` for a PID with kappa below 0.1: plants with so little dead time are poorly described by the
 /// ultimate point.
 ///
-/// Source: Astrom & Hagglund, J. Process Control 14 (2004) 635-650, and Advanced PID Control (2006), chapter 7.
+/// Source: Åström & Hägglund, J. Process Control 14 (2004) 635-650, and Advanced PID Control (2006), chapter 7.
 TuningMethod amigo_ultimate_method();
 
 }  // namespace tunewright

@@ -27,7 +27,7 @@ IdealPid settings(ControllerKind controller, ZieglerNicholsVariant variant, cons
     return pid(variant, at.Ku, at.Pu);
 }
 
-// Hang, Astrom and Ho's range of K Ku; for an integrating plant K Ku is infinite, and the rule applies to it.
+// Hang, Åström and Ho's range of K Ku; for an integrating plant K Ku is infinite, and the rule applies to it.
 std::vector<Warning> remarks(const TuningProblem& problem, const UltimatePoint& at) {
     std::vector<Warning> warnings = ultimate_warnings(problem);
     const double ratio = std::abs(1 / gain_ratio(problem.linear, at));

@@ -27,7 +27,7 @@ struct ZieglerNicholsUltimateOptions {
 ///
 /// Sources: Ziegler & Nichols, Trans. ASME 64 (1942) 759-768; Pessen, J. Dyn. Syst. Meas. Control 116 (1994) 553-557;
 /// the two overshoot variants are those of Perry & Chilton, Chemical Engineers' Handbook (1973), as the textbooks give
-/// them. Range of K Ku: Hang, Astrom & Ho, IEE Proc. D 138 (1991) 111-118.
+/// them. Range of K Ku: Hang, Åström & Ho, IEE Proc. D 138 (1991) 111-118.
 TuningMethod ziegler_nichols_ultimate_method();
 inline constexpr const char* kZieglerNicholsUltimate = "ziegler_nichols_ultimate";  ///< its id
 

@@ -1,5 +1,5 @@
-// The memory of answers until their clients have read them: one total, and the rule which answer is dropped if it is
-// too large.
+// The memory of answers until their clients have read them: one total, and the choice of the answer that is dropped if
+// the total is too large.
 #pragma once
 
 #include <chrono>

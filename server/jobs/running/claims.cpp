@@ -11,7 +11,7 @@ constexpr std::size_t kMaxAhead = 16;
 // One claim in kLowShare takes a job of low priority first, so that batches progress however many single jobs arrive.
 constexpr std::uint64_t kLowShare = 8;
 constexpr double kPaceForgetting = 0.2;
-// If no worker has taken a job for that long, all are at long jobs, whatever the latest ones took.
+// If no worker has taken a job for this long, all workers are busy with long jobs, however short the latest ones were.
 constexpr std::chrono::milliseconds kMaxTimeSinceTake{25};
 constexpr std::chrono::seconds kMaxPoliteWait{
     10};  // waiting time of jobs that must run alone, for a process that is never idle

@@ -98,7 +98,7 @@ SealedBatch seal_batch(Work& work, const BatchSeal& seal) {
     const auto seq = rows[0][0].as<std::int64_t>();
     const std::string owner = rows[0][1].c_str();
     if (!seal.idempotency_key.empty()) {
-        // Two replicas that seal with one key at the same time come here one after the other.
+        // Serialises replicas that complete batches with the same idempotency key.
         session.run("SELECT pg_advisory_xact_lock(hashtextextended($1 || ' ' || $2, 0))",
                     Values().plain(owner).text(seal.idempotency_key));
         const pqxx::result earlier =

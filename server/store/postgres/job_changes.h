@@ -22,7 +22,8 @@ CancelEffect cancel_job(Session& session, const std::string& id, UnixMs now);
 RequeueEffect requeue_job(Session& session, const std::string& id);
 RemoveEffect remove_job(Session& session, const std::string& id);
 
-// ---- claims, heartbeats, and recovery of the jobs of a worker without a lease; all times by the database's clock
+// ---- claims, heartbeats, and recovery of the jobs of a worker without a lease; times are those of the database's
+// clock
 
 /// The next jobs in their order, at most `claim.most`.
 std::vector<JobRecord> claim_jobs(Session& session, const Claim& claim);

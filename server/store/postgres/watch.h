@@ -31,7 +31,7 @@ private:
 
 class Watch {
 public:
-    /// Longer than the server's own timeout of a statement: a live server has refused it by then.
+    /// Longer than the server's own timeout of a statement: a live server has aborted it by then.
     static constexpr std::chrono::milliseconds kMaxStatementTime{15'000};
 
     Watch();

@@ -64,7 +64,8 @@ TEST(CsvClocks, MinutesAndSecondsRunOnPastTheHour) {
 TEST(CsvClocks, MoreThanTwentyFourOfTheFirstAreMinutes) {
     const CsvRecord record = logged([](int i) { return fmt::format("{:02}:{:02}", kStep * i / 60, kStep * i % 60); });
     expect_even(record);
-    EXPECT_THAT(record.notes, Contains(HasSubstr("\"24:05\" is no time of day; write 24:05:00 for hours and minutes")));
+    EXPECT_THAT(record.notes,
+                Contains(HasSubstr("\"24:05\" is not a time of day; write 24:05:00 for hours and minutes")));
 }
 
 TEST(CsvClocks, PartsOfADayAreTold) {

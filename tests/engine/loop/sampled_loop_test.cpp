@@ -17,7 +17,7 @@ using Complex = std::complex<double>;
 
 LinearPlant fopdt(double K, double T, double L) { return *LinearPlant::make(Fopdt{.K = K, .T = T, .L = L}); }
 
-// Astrom and Wittenmark (1997), example 2.8: for K e^(-Ls)/(Ts + 1), d whole samples and a remainder delta, the pulse
+// Åström and Wittenmark (1997), example 2.8: for K e^(-Ls)/(Ts + 1), d whole samples and a remainder delta, the pulse
 // transfer function K z^-d ((1 - a1) + (a1 - a) z^-1)/(z - a), a = e^(-Ts/T), a1 = e^(-(Ts - delta)/T).
 TEST(HeldPlant, AFirstOrderLagHasItsClosedForm) {
     for (const double Ts : {0.01, 0.3, 1.0, 2.5, 7.0})

@@ -45,7 +45,7 @@ TEST(UltimateAlone, AmigoNeedsTheStaticGainToo) {
     EXPECT_THAT(without.error().message, HasSubstr("static gain"));
     const auto with_gain = tune(known_point({{"amigo_ultimate", {}}}, 4.0), {});
     ASSERT_TRUE(with_gain) << with_gain.error().message;
-    // Astrom and Hagglund (2004), kappa = 1/(K Ku).
+    // Åström and Hägglund (2004), kappa = 1/(K Ku).
     const double kappa = 1 / (4 * 0.903);
     EXPECT_NEAR(settings_of(with_gain->controllers[0]).Kp, (0.3 - 0.1 * std::pow(kappa, 4)) * 0.903, 1e-12);
     EXPECT_NEAR(settings_of(with_gain->controllers[0]).Ti, 0.6 * 30.5 / (1 + 2 * kappa), 1e-12);

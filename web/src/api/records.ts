@@ -11,7 +11,8 @@ const previewed = (data: unknown): Preview => {
   };
 };
 
-/** Bytes of the largest body that the service takes; infinite if it does not say: then its refusal tells. */
+/** Bytes of the largest body that the service takes; infinite if the service does not state the limit, which its
+    refusal then shows. */
 export async function maxBodyBytes(): Promise<number> {
   const health = await call("GET", "healthz").catch(() => null);
   return (health?.data as Health | undefined)?.max_body_bytes ?? Infinity;

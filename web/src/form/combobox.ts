@@ -17,7 +17,7 @@ export interface Combobox {
   field: Field<HTMLInputElement>;
   /** Shows a choice without reporting it; null empties the field. */
   set(choice: Choice | null): void;
-  /** The typed text that is no item and stays in the field because nothing is chosen; else "". */
+  /** The typed text that is not an item and stays in the field because nothing is chosen; else "". */
   unmatched(): string;
   /** The list has changed: searched again if it is open. */
   refresh(): void;
@@ -28,7 +28,7 @@ export interface ComboboxOptions extends ControlOptions {
   find(typed: string): Choice[];
   /** null: the field was emptied. */
   onChoose(choice: Choice | null): void;
-  /** The field was left without a choice: it is empty, or has a text that is no item. */
+  /** The field was left without a choice: it is empty, or has a text that is not an item. */
   onLeft?(): void;
 }
 
@@ -44,7 +44,7 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
   const none = h("p", { class: "finds none", hidden: true });
   const element = h("div", { class: "combobox" }, field.element, count);
   list.hidden = true;
-  // Losing the focus would close the list; it stays in the field, and the click then takes the option.
+  // Keeps the focus in the field: losing it would close the list before the click selects the option.
   list.addEventListener("mousedown", (event) => event.preventDefault());
   // The list hangs below the field, above its hint.
   input.after(h("div", { class: "hanger" }, list, none));

@@ -115,8 +115,8 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     options.onRelease(value, byKey);
   }
 
-  /** By a key or a text: moved and released in one event. An unchanged value is not a move: it would never be
-      released. */
+  /** After a key or a typed text, which move and release the slider at once. An unchanged value is not reported: no
+      release would follow it. */
   function report(): void {
     if (value === reported) return;
     options.onMove(value);

@@ -29,7 +29,7 @@ export function stepTo(steps: Steps, next: Point): Steps {
   return { past: [...steps.past, steps.now].slice(-MAX_STEPS), now: next, future: [] };
 }
 
-/** Goes on with the last step. */
+/** Replaces the last step. */
 export const stepInPlace = (steps: Steps, next: Point): Steps => ({ past: steps.past, now: next, future: [] });
 
 export function stepBack(steps: Steps): Steps {

@@ -107,7 +107,7 @@ const ALONG = [
   ["parameter", "a parameter"],
 ] as const;
 
-/** The path of equations through their steady states. */
+/** Fields for a range of steady states of a plant that is given by equations. */
 export function wayFields(errors: FormErrors, active: () => boolean): WayFields {
   const own = (name: string) => (): string | null => (active() ? `/range/${name}` : null);
   const along = choiceField({ label: "Along", choices: ALONG, pointer: own("along") }, errors);

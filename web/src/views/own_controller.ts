@@ -52,7 +52,7 @@ export interface OwnController {
   answer: HTMLElement;
   below: HTMLElement[];
   show(shown: Shown): void;
-  /** While a slider is held: the settings alone, as far as they are known without a question. */
+  /** While a slider is held: the settings alone, as far as they are known without a request to the service. */
   move(shown: Shown): void;
   /** Settings that are tried by hand; null: the entry's own again. */
   follow(controller: Controller | null): void;

@@ -243,7 +243,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     const { request, faults } = common(all);
     // The region over which a loaded request holds its limits belongs to its record; Identify has its own choice.
     const held = "record" in subject && base.record ? { uncertainty: base["uncertainty"] } : {};
-    // Of a plant alone there is no record to find them in.
+    // A plant alone has no record in which they could be found.
     if (!("record" in subject) && request.baseline === "from-record") delete request.baseline;
     return { request: { ...request, ...defined({ ...held, ...subject }) }, faults };
   }

@@ -21,7 +21,7 @@ export interface TypedAnswer {
   judged: Entry | null;
 }
 
-/** The settings with the implemented loop; only the settings if this plant cannot be evaluated so. */
+/** The settings with the implemented loop; only the settings if this plant cannot be evaluated this way. */
 export async function askTyped({ implement, controller, subject, request }: TypedQuestion): Promise<TypedAnswer> {
   const product = await getProduct(implement.product);
   const judged = subject ? await evaluateAsBuilt(subject, controller, implement, request).catch(() => null) : null;

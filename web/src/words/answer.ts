@@ -25,7 +25,7 @@ export const OFF = "off";
 /** The form in which an entry is shown: a nonlinear controller has its own alone. */
 export const formOf = (entry: Entry, chosen: SettingsForm): SettingsForm => (entry.controller?.form === "npid" ? "npid" : chosen);
 
-/** The rows of a textbook form, or the sentence why the controller does not have that form. */
+/** The rows of a textbook form, or a sentence that says why the controller does not have that form. */
 export function formRows(entry: Entry, today: Entry | undefined, form: SettingsForm, units: UnitNames): AnswerRow[] | string {
   const settings = settingsOf(entry, form, units);
   if (typeof settings === "string") return settings;

@@ -84,7 +84,7 @@ export function comparisonColumns(units: UnitNames): ComparisonColumn[] {
     column("Ti", withUnit("Ti", units.time), "integral time", true, of(controller, "Ti", "no integral action")),
     column("Td", withUnit("Td", units.time), "derivative time", true, of(controller, "Td", "no derivative action")),
     column("Tf", withUnit("Tf", units.time), "filter time constant", false, filterTime),
-    column("Ms", "Ms", "peak of |S|: the smaller, the calmer", true, of(robustness, "Ms")),
+    column("Ms", "Ms", "peak of |S|: the smaller, the more robust", true, of(robustness, "Ms")),
     column("Mt", "Mt", "peak of |T|", true, of(robustness, "Mt")),
     column("gain_margin", "Gain margin", "the loop gain may grow by this factor", true, of(robustness, "gain_margin")),
     column("phase_margin", "Phase margin (°)", "smallest of all crossings", true, of(robustness, "phase_margin_deg")),

@@ -1,4 +1,4 @@
-// The three facts beside a verdict: robustness, load, set point; of the implemented loop where it is known.
+// The three facts next to a verdict: robustness, load, set point; of the implemented loop where it is known.
 import type { Entry, Figures } from "../api/types.ts";
 import { besideLimit } from "./figures.ts";
 import { formatNumber, formatPercent, product, withUnit } from "./numbers.ts";
@@ -7,7 +7,7 @@ import type { UnitNames } from "./numbers.ts";
 export interface Fact {
   label: string;
   value: string;
-  /** What the value is compared with: a limit, or today's; "" if there is nothing. */
+  /** The reference of the value: a limit, or today's; "" if there is none. */
   beside: string;
 }
 

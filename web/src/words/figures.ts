@@ -128,7 +128,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       title: "Robustness",
       main: true,
       rows: [
-        robustness("Ms", "Ms", "peak of |S|: 1/Ms is the distance of L from −1; the smaller, the calmer"),
+        robustness("Ms", "Ms", "peak of |S|: 1/Ms is the distance of L from −1; the smaller Ms, the more robust"),
         robustness("Mt", "Mt", "peak of |T|"),
         robustness("Gain margin", "gain_margin", "the loop gain may grow by this factor"),
         robustness("Phase margin (°)", "phase_margin_deg", "smallest over all crossings"),

@@ -1,5 +1,5 @@
 // The names in a recorded file: the units of its columns, and the tag that they share. And the range of u that its unit
-// or its values tell.
+// or its values show.
 import type { Preview, PreviewColumn, Span } from "../api/types.ts";
 
 export interface RecordNames {
@@ -20,7 +20,7 @@ function sharedTag(headings: readonly string[]): string {
   return others.length > 0 ? tag.trim() : "";
 }
 
-/** What a file names. The unit of its times is left to the service. */
+/** The names that a file gives. The unit of its times is left to the service. */
 export function namesOf({ columns }: Pick<Preview, "columns">): RecordNames {
   const of = (guess: PreviewColumn["guess"]): PreviewColumn | undefined => columns.find((column) => column.guess === guess);
   const [u, y] = [of("u"), of("y")];

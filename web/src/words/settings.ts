@@ -17,7 +17,7 @@ export interface Setting {
 /** A controller of any form. */
 type EquivalentSettings = { b?: number; why_null?: WhyNull } & Partial<Record<"Kp" | "Ki" | "Kd" | "Ti" | "Td", number | null>>;
 
-/** The settings of one form, or a sentence why that form does not exist. */
+/** The settings of one form, or a sentence that says why that form does not exist. */
 export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): Setting[] | string {
   const controller = entry.controller;
   if (!controller) return "There is no controller to enter.";
@@ -95,7 +95,7 @@ const PARAMETERS: Record<TextbookForm, string> = { ideal: "Kp, Ti, Td", parallel
 export const formTitle = (form: TextbookForm): string =>
   `${form[0]!.toUpperCase()}${form.slice(1)} form: ${PARAMETERS[form]}`;
 
-/** The law of the form, with what acts beside its parameters. */
+/** The law of the form, with its set-point weights, filter and direction of action. */
 export function formulaLine(form: SettingsForm, { controller }: Entry): string {
   const { b = 1, c = 0, filter, action } = controller ?? {};
   return `${FORMULAS[form]}; set-point weights b ${formatSetting(b)}, c ${formatSetting(c)}; filter ${filterWords(filter?.type)}${action ? `; ${action} action` : ""}.`;
@@ -120,11 +120,11 @@ export function rememberedForm(): TextbookForm {
   }
 }
 
-/** "Kp 0.800 ± 0.010, Ti 150.0 ± 2.0 s.": what the record holds, with standard errors and remarks. */
+/** "Kp 0.800 ± 0.010, Ti 150.0 ± 2.0 s.": the settings found in the record, with standard errors and remarks. */
 export function foundWords({ controller, standard_errors, warnings }: IdentifiedController, time: string): string {
   const written = (["Kp", "Ti", "Td"] as const).flatMap((name) => {
     const value = (controller as Partial<Record<string, unknown>>)[name];
-    // A part that is not told from none is left out.
+    // A part that cannot be distinguished from 0 is left out.
     if (typeof value !== "number" || Math.abs(value) <= 2 * (standard_errors[name] ?? 0)) return [];
     const unit = name !== "Kp" && time ? ` ${time}` : "";
     return [`${name} ${formatUncertain(value, standard_errors[name])}${unit}`];

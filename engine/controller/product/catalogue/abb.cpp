@@ -236,7 +236,7 @@ Product ac800m() {
                       .text = "not read",
                       .anti_windup = "tracking",
                       .sample_time_text = "the task"},
-        .evidence = {.level = EvidenceLevel::unverified, .unverified = {"everything: no text was reached"}},
+        .evidence = {.level = EvidenceLevel::unverified, .unverified = {"everything: no manual could be read"}},
         .example = of_design_a({{"Gain", 1.5}, {"Ti", 120.0}, {"Td", 20.0}, {"Tf", 2.0}}),
     };
 }

@@ -270,7 +270,7 @@ Product honeywell_ideal() {
                       .published = false,
                       .text = "incremental algorithm (believed)",
                       .sample_time_text = "not read"},
-        .evidence = {.level = EvidenceLevel::unverified, .unverified = {"everything: no text was reached"}},
+        .evidence = {.level = EvidenceLevel::unverified, .unverified = {"everything: no manual could be read"}},
         .example = of_design_a({{"K", 3.0}, {"T1", 2.0}, {"T2", 0.333333}, {"equation", std::string("B")}}),
     };
 }

@@ -4,7 +4,7 @@
 namespace tunewright::product {
 namespace {
 
-/// Proportional band in units of the measurement: the deviation that asks for the whole output.
+/// Proportional band in units of the measurement: the control error at which the output moves by its whole range.
 constexpr Term kBandInUnits{.Kp = -1, .Su = 1};
 constexpr std::string_view kBandBasis = "proportional band, in the unit of the measurement";
 constexpr double kWholeSecond = 1;
@@ -63,7 +63,7 @@ Product eurotherm() {
                                     "base of a band in percent", "resolution of PB and of the times",
                                     "name of the switch of the direction", "discrete algorithm"},
                      .sources = {"Eurotherm 3116 manual p. 30 (control parameters)",
-                                 "HA028651 3116 and 3200 Engineering Handbook (named, PID pages not reached)"}},
+                                 "HA028651 3116 and 3200 Engineering Handbook (its PID pages could not be read)"}},
         .example = of_design_a({{"PB", 66.6667}, {"TI", 120.0}, {"TD", 20.0}}),
     };
 }

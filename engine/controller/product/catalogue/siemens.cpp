@@ -165,7 +165,7 @@ Product fb41() {
                             "TI = 0 as integral off"},
              .sources = {"VIPA SPEED7 manual pp. 839-840 (call compatible FB41)",
                          "industrialmonitordirect.com, Siemens FB41 TM_LAG (third party)",
-                         "SIMATIC PID Control C79000-G7076-C516 (named, text not reached)"}},
+                         "SIMATIC PID Control C79000-G7076-C516 (its text could not be read)"}},
         .example = of_design_a({{"GAIN", 3.0},
                                 {"TI_s", 120.0},
                                 {"TD_s", 20.0},

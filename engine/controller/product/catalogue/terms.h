@@ -50,7 +50,7 @@ inline Example of_design_a(Settings settings) { return {.design = kDesignA, .set
 inline constexpr IdealPid kRateDesign{
     .Kp = 0.135, .Ti = 1, .Td = 0.0267, .b = 1, .c = 0, .filter = {FilterType::derivative, 0.00795775}};
 
-/// A choice that is fixed for this entry: another value is another entry, or none.
+/// A choice that is fixed for this entry: another value belongs to another entry, or to none.
 inline Parameter fixed_choice(std::string_view name, std::string_view label, Value value,
                               std::string_view remark = "") {
     return {.name = name,

@@ -31,7 +31,7 @@ struct ActivePeak {
 /// Gains that no frequency forbids; upper is infinite for the last gap.
 struct GainGap {
     double lower = 0, upper = 0;
-    /// Whether the loop is stable inside on every plant, inferred from the encirclements of -1 on the grid. Empty: the
+    /// True if the loop is stable inside on every plant, inferred from the encirclements of -1 on the grid. Empty: the
     /// grid does not show it.
     std::optional<bool> stable = std::nullopt;
     /// true: the loop is certainly stable: a stable plant at low gain
@@ -50,7 +50,7 @@ public:
     /// first.
     std::vector<ActivePeak> peaks(const DesignPoint& x, double threshold) const;
 
-    /// The gaps left by the union of all forbidden intervals of |Kp| for given Ti, Td (Garpinger and Hagglund 2008, Eq.
+    /// The gaps left by the union of all forbidden intervals of |Kp| for given Ti, Td (Garpinger and Hägglund 2008, Eq.
     /// 6, for every circle and every plant at once), in ascending order.
     std::vector<GainGap> gain_gaps(double Ti, double Td) const;
 

@@ -12,9 +12,9 @@ export interface Answer {
   rows: AnswerRow[];
   /** For the clipboard. */
   text: string;
-  /** What follows the rows, always visible. */
+  /** The part after the rows, always visible. */
   below: HTMLElement[];
-  /** What is folded away. */
+  /** The part that is folded away. */
   details: HTMLElement[];
   /** Other values can be typed in the place of these. `choices`: by a row's name; empty: a number. */
   choices: ((name: string) => string[]) | null;
@@ -37,9 +37,9 @@ export interface AnswerCard {
 }
 
 export interface AnswerCardParts {
-  /** What chooses the controller: it stands in the heading's line. */
+  /** The picker of the controller, in the line of the heading. */
   picker: HTMLElement;
-  /** What stands directly below the picker: complaints about it, what to do next. */
+  /** Text directly below the picker: what is wrong, and the next step. */
   notes: HTMLElement[];
   /** Folded parts at the end of the card. */
   folded: HTMLElement[];

@@ -1,4 +1,4 @@
-// What stands beside settings in the user's product: what is wrong with them, and how the block computes them.
+// The text next to settings in the user's product: what is wrong with them, and how the block computes them.
 import type { AsEntered, Entry, Product } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { builtRows, builtTroubles, differenceSentence, evidenceSentence, noteTimes, samplingSentences, splitNotes } from "../../words/products.ts";
@@ -7,7 +7,7 @@ import type { BuiltRow } from "../../words/products.ts";
 /** The ideal loop, and where it is known the implemented one. */
 export type Judged = Pick<Entry, "robustness" | "performance" | "implemented" | "warnings" | "longest_sample_time" | "verdict">;
 
-/** The remarks that nobody may miss. `judged`: null for settings that are tried by hand. */
+/** The remarks that must not be missed. `judged`: null for settings that are tried by hand. */
 export function productTroubles(judged: Judged | null): HTMLElement[] {
   if (!judged) return [h("p", { class: "hint" }, "Manual settings: the figures next to the sliders are those of the loop with an ideal controller.")];
   const differs = judged.implemented ? differenceSentence(judged.implemented) : "";

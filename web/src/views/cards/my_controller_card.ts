@@ -17,19 +17,18 @@ import { evidenceWords, findProducts, needSentence, productTitle } from "../../w
 
 const formChoice = (form: TextbookForm): Choice => ({ id: form, text: formTitle(form), aside: "" });
 
-/** The forms whose title holds what is typed. */
+/** The forms whose title contains the typed text. */
 const findForms = (typed: string): Choice[] =>
   TEXTBOOK_FORMS.map(formChoice).filter(({ text }) => text.toLowerCase().includes(typed.trim().toLowerCase()));
 
 export interface MyControllerCard {
   element: HTMLElement;
-  /** With forms: the parts that stand elsewhere in the card of the settings. What is missing, and `below`; and the
-      folded ranges. */
+  /** With `forms` the answer card places these parts: `facts` (what is missing) with `below`, and the folded ranges. */
   notes: HTMLElement[];
   facts: HTMLElement;
   setProducts(products: ProductSummary[]): void;
   setUnits(units: UnitNames): void;
-  /** The values of u in the loop's record, which tell its range if its unit does not. */
+  /** The values of u in the loop's record, which show its range if its unit does not. */
   setOutput(values: readonly (number | null)[]): void;
   /** Without reporting. `form`: the textbook form that stands in place of a product, where forms are offered. */
   set(mine: MyController | null, form?: TextbookForm): void;
@@ -40,7 +39,8 @@ export interface MyControllerCard {
 export interface MyControllerOptions {
   /** Offers the textbook forms as well as the products: the field alone, for the card of the settings. */
   forms: boolean;
-  /** Receives the readable part, whether or not something is missing yet; `form`: what stands in place of a product. */
+  /** Receives the readable part, whether or not something is missing yet; `form`: the textbook form in place of a
+      product. */
   onChange(mine: MyController | null, form: TextbookForm): void;
 }
 

@@ -21,7 +21,7 @@ const CHANGED = "Changed settings are not replayed; a design is replayed when it
 
 /** `plots`: the grid for its plot. */
 export function replayCard(plots: PlotGrid): ReplayCard {
-  /** What is shown: the replays do not change while a slider moves. */
+  /** The replays on the card: they do not change while a slider moves. */
   let shown: unknown[] = [];
   const title = h("h2", { id: uniqueId("replay") }, "Replay of the record");
   const about = h("p", { class: "hint" });

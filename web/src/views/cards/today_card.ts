@@ -26,7 +26,7 @@ export interface TodayCard {
   read(): { baseline: TuningRequest["baseline"]; errors: FieldError[] };
   load(units: Units | undefined, baseline: TuningRequest["baseline"], name: string | undefined): void;
   readName(): string;
-  /** Names that a file tells: written where nothing is typed. */
+  /** Names from a file: shown in fields in which nothing was typed. */
   propose(names: RecordNames): void;
   /** The record in which today's settings can be found; null: there is none, or not of a loop. */
   offerRecord(read: (() => RecordedTest) | null): void;
@@ -89,7 +89,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   let record: (() => RecordedTest) | null = null;
   const note = h("p", { class: "hint", role: "status", hidden: true });
   const beginFind = newest();
-  /** The service has found them: what it refuses is not sent. */
+  /** The service has found them; a choice that it refuses is not sent. */
   let sure = false;
   // Members of a loaded request that no field shows, e.g. set-point weights.
   let rest: Record<string, unknown> = {};
@@ -147,7 +147,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     label();
   }
 
-  /** What the record holds is asked once, when it is chosen; a refusal takes the choice back. */
+  /** Asks once, when this is chosen, for the settings in the record; a refusal undoes the choice. */
   async function find(): Promise<void> {
     const isNewest = beginFind();
     sure = false;

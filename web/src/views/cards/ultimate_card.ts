@@ -1,4 +1,5 @@
-// "Only Ku and Pu": the result of an experiment with a proportional controller, and the settings that rules make of it.
+// "Only Ku and Pu": the result of an experiment with a proportional controller, and the settings that rules derive from
+// it.
 import type { FieldError, Result, TuningRequest } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { textField } from "../../form/controls.ts";

@@ -60,7 +60,7 @@ struct TuningEntry {
     MethodOptions options;  ///< the given ones, with the defaults for the others
     std::optional<Plant> reduced_model;
     std::optional<double> Ms_limit;            ///< the limit that the method designed for
-    std::optional<double> asked_Ms;            ///< the same limit if the request set it or the method promises it
+    std::optional<double> asked_Ms;            ///< the same limit if the request set it or the method is to keep it
     std::optional<double> asked_overshoot;     ///< percent of the step, where the request has one
     Reports reports;                           ///< the method's own, and those requested for every controller
     std::optional<OptimumAtMs> optimum_at_Ms;  ///< if requested

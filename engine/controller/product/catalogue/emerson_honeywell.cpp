@@ -162,7 +162,7 @@ Product deltav_series() {
                 deltav_alpha(),
                 fixed_choice("FORM", "FORM", std::string("Series")),
                 fixed_choice("STRUCTURE", "STRUCTURE", std::string(kOwnStructure),
-                             "the default; the effect of the others in this form was not read"),
+                             "the default; how the others act in this form was not read in the maker's documents"),
             },
         .series_alpha = kDeltaVAlpha,
         .filter = {FilterKind::parameter, 0,

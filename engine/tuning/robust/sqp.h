@@ -4,7 +4,7 @@
 //
 //  1. Linearise the cost and the largest peaks at the current design; the quadratic program gives a step.
 //  2. Restore feasibility by Newton steps on the violated peaks, and check the stability.
-//  3. Compute the cost there and accept or reject the step by the ratio of actual to promised decrease.
+//  3. Compute the cost there and accept or reject the step by the ratio of the actual to the predicted decrease.
 //  4. Update the Hessian by the change of the gradients, and the trust region by the ratio.
 #pragma once
 

@@ -161,7 +161,7 @@ Product ut_advanced() {
                      .read = {"equation of the deviation derivative type and of PD control",
                               "which type acts in which mode", "range of P and D, P = 0 as 0.1, OFF"},
                      .unverified = {"range of I (taken from D)", "base of the percent (the range of the input assumed)",
-                                    "that the bumpless type is b = 0", "filter", "name of the switch of the direction",
+                                    "that the bumpless type has b = 0", "filter", "name of the switch of the direction",
                                     "discrete algorithm"},
                      .sources = {"IM 05P01C31-01EN pp. 6-28, 8-87, 8-88 (UT55A)",
                                  "IM 05P01D31-01EN pp. 8-22, 8-24 (UT32A, UT35A)"}},

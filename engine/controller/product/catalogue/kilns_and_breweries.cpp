@@ -147,7 +147,7 @@ Product brewblox() {
             },
         .filter =
             {FilterKind::unknown, 0,
-             "The derivative is that of a filtered measurement over about Td/2; which filter was not read. P and I "
+             "The derivative is that of a filtered measurement over about Td/2, by a filter that is not known. P and I "
              "use the filter of the sensor pair."},
         .weights = {1, 0, "P acts on the error, D on the measurement."},
         .action = {.kind = Action::Kind::signed_gain, .text = "A negative Kp cools."},

@@ -36,8 +36,8 @@ struct Standing {
     bool holds() const { return group == StandingGroup::holds; }
 };
 
-/// The loop of which a peak is known: the ideal one, that of the user's controller, or either on the worst of several
-/// plants.
+/// The loop to which a known peak belongs: the ideal one, that of the user's controller, or either on the worst of
+/// several plants.
 enum class PeakLoop { ideal, on_device, worst_plant, ideal_on_worst_plant };
 
 struct PlacedPeak {

@@ -41,7 +41,7 @@ constexpr std::size_t kLargeBody = 1 << 20, kWaitingComputations = 64;
 constexpr std::size_t kForOthers = 4;  // computations, for clients that have none while others use all cores
 // Concurrent answers with a whole job; each may take a hundred megabytes for a moment.
 constexpr std::size_t kReaders = 2, kWaitingReaders = 1024;
-// Fewer than the connections for reading, of which a shared store has four: a single job never waits for lists only.
+// Fewer than the connections for reading (a shared store has four), so that lists alone never delay a single job.
 constexpr std::size_t kListers = 2, kSearchers = 1;
 // Batches are uploaded and downloaded without delaying other calls.
 constexpr std::size_t kBatchThreads = 2;

@@ -152,7 +152,7 @@ public:
 private:
     static constexpr std::size_t kMaxHeadLength = 64 * 1024;
 
-    /// `fresh` is the end of the head.
+    /// `fresh`: the bytes of the head that arrived last.
     std::optional<Problem> find(std::string_view fresh, std::vector<RawEntry>& entries) {
         constexpr std::string_view kMark = "\xEF\xBB\xBF";
         if (head_.size() < kMark.size() && kMark.starts_with(head_)) {

@@ -216,7 +216,7 @@ private:
         record_.lines.push_back(line);
     }
 
-    // Reads set point and disturbances, which hold until the next row that counts: a line may have one of them only.
+    // Reads set point and disturbances, which hold until the next row that counts: a line may have only one of them.
     bool read_others(const CsvLine& line) {
         bool any = false;
         const auto take = [&](std::size_t column, double& target) {

@@ -39,7 +39,7 @@ struct Codec {
 /// The largest absolute value of a number, so that products of a few stay finite.
 constexpr double kLargestNumber = 1e30;
 
-/// Reads a number or reports why it is not valid, rule included. These sentences are only here.
+/// Reads a number, or reports why it is not valid, with the rule. These sentences are written nowhere else.
 std::optional<double> read_number(const Json& value, const NumberRule& rule, Reader& reader);
 Json number_schema(const NumberRule& rule);
 

@@ -397,7 +397,7 @@ std::variant<Json, Problem> parse(std::string_view text) {
         builder.fault(rapidjson::kParseErrorStringInvalidEncoding, valid);
         return *builder.problem();
     }
-    // The reader takes a zero byte as the end of its text, and writes unescaped strings over it.
+    // The reader takes a zero byte as the end of its text, and writes unescaped strings into the same memory.
     std::string copy(text);
     rapidjson::InsituStringStream stream(copy.data());
     rapidjson::Reader reader;

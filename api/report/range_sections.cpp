@@ -42,8 +42,8 @@ Row settings_row(const Html& head, const JsonLocation& controller, const JsonLoc
 std::string interpolation_of(const JsonLocation& schedule) {
     const std::string word = text_at(schedule.at("interpolation"));
     if (word == "steps")
-        return "A row's settings are used from its place on; the controller leaves a row at half the hysteresis beyond "
-               "its border. Hysteresis: ";
+        return "A row's settings are used from its place on; the controller changes to the next row only half the "
+               "hysteresis beyond its border. Hysteresis: ";
     return word == "linear_in_times"
                ? "Between rows Kp, Ti, Td, Tf and b are linear; beyond the first and the last row they are constant."
                : "Between rows Kp, 1/Ti, Td, Tf and b are linear; beyond the first and the last row they are constant.";

@@ -111,7 +111,7 @@ std::string change_sheet(const ReportInput& subject, const ReportWords& said) {
                 "sheet");
 }
 
-/// The answer `write` for the controller number `index` of what was read.
+/// Calls `write` for the controller number `index` of the result that was read.
 template <class Write>
 std::variant<std::string, Problem> page_about(ChosenEntry& found, std::string_view index, const ReportWords& words,
                                               const Write& write) {

@@ -20,7 +20,8 @@ Html reason_section(const ReportInput& subject);
 std::string product_title(const product::Product& product);
 /// The user's own controller in words, as the request names it; "" if it names none.
 std::string controller_words(const ReportInput& subject);
-/// The column of today's settings: only if they are known, or otherwise empty, to be written into.
+/// `if_known`: the column of today's settings is shown only if they are known. `always`: otherwise it is empty, to be
+/// written into.
 enum class TodayColumn { if_known, always };
 /// Today's settings and the new ones, with the ranges for which they are valid.
 Html settings_section(const ReportInput& subject, TodayColumn column);

@@ -232,7 +232,7 @@ def run(store, given, _build):
         if place.replicas > 1:
             table.row("times that the database was", kills["database"], "", given.database_kills, at_most=False)
         judge(table, place, posting, alone)
-        table.row("jobs a second, all told", posting.accepted / seconds, "/s")
+        table.row("jobs a second in all", posting.accepted / seconds, "/s")
         table.row("peak memory of a process", fleet.peak, "MiB", 400)
         table.row("bytes of the store for each job", place.bytes() / max(1, posting.accepted), "B", 6000)
     return table.held

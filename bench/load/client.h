@@ -1,6 +1,6 @@
 // A small HTTP/1.1 client for measurements: many kept-alive connections on one epoll and one thread, so that the client
-// takes as little of the machine as it can from the server beside it. It reads what Tunewright answers (Content-Length,
-// or chunks) and is no general client.
+// takes as little of the machine as it can from the server on the same host. It reads what Tunewright answers
+// (Content-Length, or chunks) and is no general client.
 #pragma once
 
 #include <chrono>

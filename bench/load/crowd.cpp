@@ -1,4 +1,4 @@
-// Scenarios in which one client is measured beside others.
+// Scenarios in which one client is measured while others are connected.
 #include <cstdio>
 #include <stdexcept>
 

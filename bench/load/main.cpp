@@ -17,7 +17,7 @@ constexpr const char* kUsage =
     "  jobs          --count SIMC designs from the post to their end; --follow says how it is noticed\n"
     "  interactive   one client that waits for single designs while a batch of --count runs\n"
     "  soak          --count designs, half single, half in batches; --pid: the server's peak memory\n"
-    "  crowd         a normal client for --seconds beside 500 idle connections, 200 event streams, 200 waiting\n"
+    "  crowd         a normal client for --seconds, with 500 idle connections, 200 event streams, 200 waiting\n"
     "                requests and 50 clients of one byte a second\n"
     "  replicas      the time of a batch of --count robust PID designs by grid search\n";
 

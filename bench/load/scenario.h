@@ -28,7 +28,7 @@ Figures finish_jobs(const Options& options);
 Figures interactive(const Options& options);
 /// `count` jobs, half of them single ones that are waited for, half in batches whose results are read.
 Figures soak(const Options& options);
-/// A normal client beside 500 idle connections, 200 event streams, 200 waiting requests and 50 that send a byte a
+/// A normal client, with 500 idle connections, 200 event streams, 200 waiting requests and 50 that send a byte a
 /// second.
 Figures crowd(const Options& options);
 /// The time of a batch of `count` heavy designs.

@@ -2,7 +2,7 @@
 //
 //   peers_engine plants              name, num, den (descending powers, between spaces), dead time
 //   peers_engine design SEARCH [pi]  name, Kp, Ti, Td, ms: the method `robust`, the shorter of two runs
-//   peers_engine price < answers     name, load IAE to infinity of the Kp, Ti, Td beside the name; nan where unstable
+//   peers_engine price < answers     name, load IAE to infinity of the Kp, Ti, Td after the name; nan where unstable
 
 #include <algorithm>
 #include <chrono>

@@ -1,5 +1,5 @@
 % The design with the functions of Octave's package control, in the way of its example optiPID: fminsearch over Kp, Ti
-% and Td from a rule of Astrom and Hagglund on the ultimate point. With one word:
+% and Td from a rule of Åström and Hägglund on the ultimate point. With one word:
 %
 %   optipid   the example's own objective: ITAE + 10 times the overshoot (both of a set-point step) + 20 Ms. It knows no
 %             limits, and its answers are judged by them all the same.

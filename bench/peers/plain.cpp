@@ -166,7 +166,7 @@ public:
         for (std::size_t j = 0; j < plant.num.size(); ++j) C_[j] = plant.num[j] / plant.den[n_];
     }
 
-    /// AMIGO's rules on the ultimate point (Åström and Hägglund 2006), of which the gain is not used.
+    /// AMIGO's rules on the ultimate point (Åström and Hägglund 2006); their gain is not used.
     Shape start(bool pi) const {
         const double Tu = 2 * std::numbers::pi,
                      static_gain = plant_.den[0] == 0 ? INFINITY : plant_.num[0] / plant_.den[0];

@@ -31,8 +31,8 @@ using Simulate = std::function<StepResponse(const ResponseOptions&)>;
 /// go to infinity.
 MeasuredResponse measure(const Simulate& simulate, ResponseOptions options, double target);
 
-/// True if every error is known and within its promise; also true for a response that does not settle, whose indices
-/// have no promise.
+/// True if every error is known and at most the promised one; also true for a response that does not settle, because no
+/// accuracy is promised for its indices.
 bool as_promised(const MeasuredResponse& measured);
 
 }  // namespace tunewright

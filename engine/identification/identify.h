@@ -163,8 +163,8 @@ struct IdentifiedModel {
 ///   the measured response at the oscillation (and to the static gain of a biased test), and a warning says so.
 /// - `method` relay_fourier: Liu and Gao's formulas alone; two_point: the construction from one settled step. Neither
 ///   gives standard errors.
-/// - Standard errors and covariance count correlated residuals as their number of independent samples, and include what
-///   rounding of y does.
+/// - Standard errors and covariance count correlated residuals as their number of independent samples, and include the
+///   effect of rounding of y.
 /// - If a controller moves u in response to y, the model is based on the effect of the set point's moves (column r, or
 ///   clear kicks of u) on u and y (closed_loop.h); without any, on its rows in manual (closed_loop/loop_parts.h);
 ///   without these either, the record is refused. Warning closed-loop.

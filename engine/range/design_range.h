@@ -68,8 +68,8 @@ Expected<RangeDesign> design_range(const RangeProblem& problem, const RunControl
 
 /// Evaluates a given schedule over the range without a design: fast enough to follow a slider. Its cost is relative to
 /// optima that are searched at a few places and interpolated between them; at the worst places, to their own optima.
-/// `one` is empty and the verdict says nothing; a schedule beyond a limit has the warning "schedule-above-limit". Rows
-/// ascend; hysteresis is in the unit of `at`.
+/// `one` and `because` are empty, and `verdict` has no meaning; a schedule beyond a limit has the warning
+/// "schedule-above-limit". Rows ascend; hysteresis is in the unit of `at`.
 ///
 /// Errors: the first of option_faults; those of PointDesigns::at.
 Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule& schedule, const RunControl& control);

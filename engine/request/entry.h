@@ -36,8 +36,8 @@ struct Standing {
     bool holds() const { return group == StandingGroup::holds; }
 };
 
-/// The loop of which a peak is known: the ideal one, that of the user's controller, or either on the worst of several
-/// plants.
+/// The loop to which a known peak belongs: the ideal one, that of the user's controller, or either on the worst of
+/// several plants.
 enum class PeakLoop { ideal, on_device, worst_plant, ideal_on_worst_plant };
 
 struct PlacedPeak {
@@ -60,7 +60,7 @@ struct TuningEntry {
     MethodOptions options;  ///< the given ones, with the defaults for the others
     std::optional<Plant> reduced_model;
     std::optional<double> Ms_limit;            ///< the limit that the method designed for
-    std::optional<double> asked_Ms;            ///< the same limit if the request set it or the method promises it
+    std::optional<double> asked_Ms;            ///< the same limit if the request set it or the method is to keep it
     std::optional<double> asked_overshoot;     ///< percent of the step, where the request has one
     Reports reports;                           ///< the method's own, and those requested for every controller
     std::optional<OptimumAtMs> optimum_at_Ms;  ///< if requested

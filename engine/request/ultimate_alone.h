@@ -1,4 +1,4 @@
-// Settings for a plant of which only the ultimate gain and period are known.
+// Settings for a plant when only its ultimate gain and period are known.
 #pragma once
 
 #include "engine/expected.h"

@@ -12,7 +12,7 @@ constexpr std::chrono::milliseconds kPollInterval{100};  // between checks for c
 ComputeSlots::Wait ComputeSlots::take(const std::string& client, Clock::time_point deadline,
                                       const std::function<bool()>& left) {
     std::unique_lock lock(mutex_);
-    // If this request may begin, every waiting one may not, because it would have begun: no request is overtaken.
+    // A waiting request that could begin would have begun: if this one may begin, it overtakes none.
     if (may_begin(client)) return begin(client), Wait::granted;
     const auto own = queues_.find(client);
     if (waiting_ >= max_waiting_ || (own != queues_.end() && 2 * own->second.size() >= max_waiting_)) return Wait::full;

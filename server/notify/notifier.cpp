@@ -131,8 +131,8 @@ void Notifier::tell(const Delivery& delivery) {
     const Reply reply = send(delivery, where, *news);
     if (reply.status >= 200 && reply.status < 300) {
         const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(DeliveryPool::Clock::now() - begun);
-        log_info(what_ended(delivery) + " was told to " + where.origin() + " in " + std::to_string(took.count()) +
-                 " ms, try " + std::to_string(delivery.tries + 1));
+        log_info(what_ended(delivery) + " was reported to " + where.origin() + " in " + std::to_string(took.count()) +
+                 " ms, attempt " + std::to_string(delivery.tries + 1));
         settings_.count(DeliveryOutcome::delivered);
         return settle(delivery, std::nullopt);
     }

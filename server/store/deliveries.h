@@ -42,8 +42,8 @@ public:
     /// Takes those that are due, the oldest first, and reserves them for `hold` from now on.
     virtual void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t max,
                                  Done<std::vector<Delivery>> done) = 0;
-    /// Without a pause: delivered or given up, deleted. With a pause: the next attempt is due that long after `now`;
-    /// `tried`: one more attempt has failed; otherwise this process was not allowed to send it.
+    /// Without a pause it was delivered or given up, and is deleted. With a pause: the next attempt is due that long
+    /// after `now`; `tried`: one more attempt has failed; otherwise this process was not allowed to send it.
     virtual void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
                                  bool tried, Done<bool> done) = 0;
 };

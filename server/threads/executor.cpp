@@ -71,7 +71,7 @@ void Executor::work() {
         try {
             task();
         } catch (const std::exception& fault) {
-            log_error(std::string("a task met a fault: ") + fault.what());
+            log_error(std::string("a task failed by an internal error: ") + fault.what());
         }
     }
 }

@@ -289,7 +289,7 @@ class QueueTest(unittest.TestCase):
             for job in ids:
                 self.assertEqual(service.wait_for(job["id"], patience=120)["status"], "succeeded")
             slow.sort()
-            print("healthz beside 1,000 jobs: p99 %.1f ms" % (1e3 * slow[int(0.99 * len(slow))]))
+            print("healthz during 1,000 jobs: p99 %.1f ms" % (1e3 * slow[int(0.99 * len(slow))]))
 
 
 class TracesTest(unittest.TestCase):

@@ -170,7 +170,7 @@ def run(command):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     actions = parser.add_subparsers(dest="action", required=True)
-    runner = actions.add_parser("run", help="run a command beside a cluster")
+    runner = actions.add_parser("run", help="run a command with a cluster")
     runner.add_argument("command", nargs="+")
     return run(parser.parse_args().command)
 

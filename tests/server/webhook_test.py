@@ -85,7 +85,7 @@ class ToldTest(WebhookTest):
         for controller in job["result"]["controllers"]:
             self.assertTrue(controller.pop("responses") and controller.pop("frequency"))
         self.assertEqual(note["data"], job)
-        self.assertIn("was told to " + receiver.origin, service.read_log())
+        self.assertIn("was reported to " + receiver.origin, service.read_log())
         self.assertNotIn("s3cret", service.read_log())
         self.assertEqual(self.metric(service, "delivered"), 1)
 

@@ -234,8 +234,7 @@ void take_points(RangeRequest& request, Reader& reader) {
     }
 }
 
-/// Checks that the engine makes of all points: always of their places, of plants only if no record has to be
-/// identified.
+/// The engine's checks of all points: always of their places; of their plants only if no record has to be identified.
 void check_points_together(RangeRequest& request, bool plants_are_clean, Reader& reader) {
     std::vector<double> places;
     for (const GivenRangePoint& point : *request.points) places.push_back(point.at);

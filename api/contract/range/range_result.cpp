@@ -84,7 +84,8 @@ const Description<range::ScheduleDesign>& schedule_contract() {
              interpolation_word().schema, "Interpolation between the rows.")
             .field(
                 "hysteresis", {}, [](const S& s, Writer& out) { out.number(s.schedule.hysteresis); }, number().schema,
-                "Hysteresis of steps, in the unit of `at`: the controller leaves a row at half of it beyond the "
+                "Hysteresis of steps, in the unit of `at`: the controller changes to the next row only half of it "
+                "beyond the "
                 "border.")
             .field(
                 "rows", {},

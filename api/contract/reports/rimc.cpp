@@ -54,7 +54,7 @@ const Description<RimcReport>& rimc_contract() {
             .field("stability_limit", &R::stability_limit, figure(), "lambda below which the loop is unstable.",
                    {.unit = "time"})
             .field("full_controller", &R::full_controller, or_reason(answer(full_controller_contract())),
-                   "Beside the PID.")
+                   "For comparison with the PID.")
             .field("disturbance_peak_curve", &R::curve, maybe(answer(curve_contract())), "Only with the option curve.")
             .why_null("Not defined for this design.");
         return d;

@@ -144,7 +144,7 @@ std::optional<ShapedText> json_rows(std::string_view text) {
         if (held == 1) out = from_rows(*std::ranges::find_if(*value, holds_rows));
         if (held == 0) out = from_columns(*value);
     }
-    if (out) out->notes.emplace_back("The file is JSON; line numbers mean its samples, from 1.");
+    if (out) out->notes.emplace_back("The file is JSON; line numbers are those of its samples, from 1.");
     return out;
 }
 

@@ -44,7 +44,7 @@ enum class ParameterRole {
     weight_c,
     choice,       ///< sets weights or filter, by `options`
     sample_time,  ///< the block's own period as it is typed
-    fixed,        ///< not part of the equivalent ideal controller, which is that of its `standard`
+    fixed,        ///< has no effect on the equivalent ideal controller, which is computed for its value `standard`
     limit,        ///< limit of output, integral or tracking: not part of the linear law
 };
 

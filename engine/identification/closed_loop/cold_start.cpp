@@ -20,7 +20,7 @@
 namespace tunewright {
 namespace {
 
-constexpr double kMinDeparture = 0.02;  ///< of y's range: y has left its rest
+constexpr double kMinDeparture = 0.02;  ///< of y's range: after a larger change y is no longer at rest
 constexpr double kNoiseDeviations = 4;  ///< standard deviations of noise, which count as no movement
 
 /// Number of rows in which u is constant at its first value.

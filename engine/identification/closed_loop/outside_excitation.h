@@ -38,8 +38,7 @@ bool set_point_is_input(const CleanRecord& record, const Record& as_given);
 /// - the switch-on alone, with the step from y to the set point, or of unknown size if there is none;
 /// - kicks of u that the controller's law does not explain (`feedback`, times as parts of the record);
 /// - a start far from the final y, with u moving and y at rest in the first rows: the set point moved, or the
-///   controller was
-///   switched on, at the first row or just before it.
+///   controller was switched on, at the first row or just before it.
 std::vector<OutsideExcitation> outside_excitations(const CleanRecord& record, const SetPoint& set_point,
                                                    const std::vector<OutsideMove>& kicks);
 

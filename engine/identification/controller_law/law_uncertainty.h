@@ -19,7 +19,7 @@ LawCovariance law_covariance(const LawSamples& samples, const std::vector<char>&
 double white_noise(const std::vector<double>& y);
 
 /// The fit without what errors of y, white and of this variance, add to the moments of P and D: bias-compensated least
-/// squares (Stoica and Söderström 1982). Not solved where such errors would explain all of y's moves.
+/// squares (Stoica and Soderstrom 1982). Not solved where such errors would explain all of y's moves.
 LawFit without_errors_of_y(const LawSamples& samples, const LawMoments& m, const FoundLaw& law, double variance);
 
 }  // namespace tunewright

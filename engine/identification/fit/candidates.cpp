@@ -77,7 +77,7 @@ Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector
         extended.insert(extended.end(), shapes.begin(), shapes.end());
         if (context.relay && form.structure == Structure::sopdt_zero) add_slow_parts(fit.shape, extended);
     }
-    // Of both kinds: a simpler fit's neighbourhood looks good at once, another local minimum only after refinement.
+    // Starts of both kinds: one near a simpler fit looks good at once, another local minimum only after refinement.
     std::vector<ModelShape> starts = scan_shapes(context.few(), form, kValleysRefined * form.gains(), context.stop);
     if (!extended.empty()) {
         const std::vector<ModelShape> best = best_points(context, form, extended);

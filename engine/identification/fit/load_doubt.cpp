@@ -49,7 +49,8 @@ Strengths likeliest(const Eigen::VectorXd& z, const Eigen::VectorXd& s, double r
     const double n = others + static_cast<double>(z.size());
     Strengths best;
     for (int k = 0; k < kPoints; ++k) {
-        // From the ratio that changes one direction's variance by a tenth to a thousand times the noise in it.
+        // 0, then from the ratio that adds to the noise a tenth of its variance in the direction that the load changes
+        // most, up to a million times its variance.
         const double ratio = k == 0 ? 0 : 0.1 * std::pow(1e7, (k - 1.0) / (kPoints - 2.0)) / s.maxCoeff();
         const Eigen::ArrayXd variance = 1 + ratio * s.array();
         const double noise = (rest + (z.array().square() / variance).sum()) / n;

@@ -2,14 +2,12 @@
 // change it:
 //
 //  1. Fit the structures of the request, simpler ones first, from each other's results; more complex ones if a pattern
-//  or
-//     more than noise remains. Choose by the information criterion (candidates.h).
+//     or more than noise remains. Choose by the information criterion (candidates.h).
 //  2. For a relay test that no model explains, or with an unstable model over too long a time: try only the beginning.
 //  3. For a pattern in unevenly spaced rows: let u change midway between its rows.
 //  4. For moves of u in gaps: place them at the missing rows where they explain y best.
 //  5. For moves of u within their rows: estimate their times with the model; for a relay also place its switches where
-//  they
-//     explain y best, and keep the better result.
+//     they explain y best, and keep the better result.
 //  6. A pattern still: a drift, a load, both.
 //  7. Replace a slow part by a drift if that is as good; then try a drift that leaves no pattern.
 //  8. Determine how late the rows may show u, for the errors of the dead time.

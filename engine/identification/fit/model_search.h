@@ -84,9 +84,8 @@ struct ModelSearchConstants {
 /// best fit leaves a pattern:
 /// - in a record that is not evenly sampled, changes of u midway between the rows are tried;
 /// - in a record in which u moves more than once, or y moves slowly before u, a drift and a lasting load at an unknown
-///   time
-///   are tried, and kept if they reduce the sum of squares to a third (a thirtieth if a pattern remains);
-///   a load that cancels a move of u before the plant has responded to it is not accepted;
+///   time are tried, and kept if they reduce the sum of squares to a third (a thirtieth if a pattern remains); a load
+///   that cancels a move of u before the plant has responded to it is not accepted;
 /// - the free run of an unstable plant is meaningless over a long record: in relay tests that no model explains, the
 ///   record's beginning is tried.
 ///

@@ -172,8 +172,8 @@ Fit condensed(const Fit& fit, std::vector<double>& t) {
 
 /// About a hundred rows are enough, because a load that matters changes slowly. J's columns are divided by `length`.
 FittedRows few_rows(const Fit& fit, std::span<const double> times, const Eigen::VectorXd& length) {
-    constexpr std::size_t kMinBlocks = 64, kBlocksPerColumn = 2;  // rows; more for each column that is not a
-                                                                  // parameter's
+    constexpr std::size_t kMinBlocks = 64, kBlocksPerColumn = 2;  // rows; and for each column that does not belong to a
+                                                                  // parameter
     const std::size_t n = fit.residual.size(),
                       block = std::max<std::size_t>(1, n / (kMinBlocks + kBlocksPerColumn * fit.nuisance.size()));
     const auto rows = static_cast<Eigen::Index>((n + block - 1) / block);

@@ -33,8 +33,8 @@ StateMatrix<kOrder> product(const StateMatrix<kOrder>& a, const StateMatrix<kOrd
     return out;
 }
 
-/// The response x, its slope and its curvature (0, 1, 2) as functions of the input v and of e, the state minus its rest
-/// for v.
+/// The response x, its slope and its curvature (0, 1, 2) as functions of the input v and of e, the state minus its
+/// steady state for v.
 template <std::size_t kOrder>
 struct Readings {
     StateRow<kOrder> jump;                     ///< change of e for each unit by which v falls

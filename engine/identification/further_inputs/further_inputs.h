@@ -16,8 +16,7 @@ namespace tunewright {
 /// 4. Refine every structure together with the inputs, and repeat the choice. Remove drift and load if
 ///    the information criterion without them is at most 10 higher.
 /// 5. Remove an input without which the information criterion is at most 10 higher, or that causes less than a
-///    thousandth
-///    of y's variance. If none remains, the result is that of step 1.
+///    thousandth of y's variance. If none remains, the result is that of step 1.
 ///
 /// In the result `context.record.d` are the inputs that matter, in the order of ModelForm::further.
 ModelSearch search_with_further(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control);

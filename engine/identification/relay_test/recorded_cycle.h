@@ -46,11 +46,11 @@ struct RecordedCycle {
     double omega() const { return 6.283185307179586 / period; }
     /// True if the test was meant to show a static gain: the relay's levels are not symmetric around the rest.
     bool biased() const;
-    /// Eq. 14 (Liu and Gao): mean of y over mean of v, from rest.
+    /// Eq. 14 (Liu and Gao): mean of y over mean of v, both as deviations from rest.
     double static_gain() const;
-    /// Standard deviation of the mean of y from its rest: noise and rounding of the rows at rest, and the changes of
-    /// y's mean from period to period, extrapolated from rest to the steady periods as a drift and as a random walk.
-    /// That of one row if the record starts with the relay.
+    /// Standard deviation of the mean of y as a deviation from rest: noise and rounding of the rows at rest, and the
+    /// changes of y's mean from period to period, extrapolated from rest to the steady periods as a drift and as a
+    /// random walk. If the record starts with the relay, it is the standard deviation of one row.
     double mean_std = 0;
     double static_gain_std() const;
 };

@@ -4,9 +4,9 @@
 //  1. Linearise: the problem computes its normal equations J'J d = -J'r at the current point.
 //  2. Damp: the diagonal grows by `damping` times itself, which shortens the step and turns it towards the gradient.
 //  3. Try: the problem computes the sum at the step's end. If it fell, the damping is lowered and 1 follows; otherwise
-//  the
-//     damping is raised and 2 follows.
-//  4. End: a step changes or promises too little (decided by the problem), or the damping reaches its maximum.
+//     the damping is raised and 2 follows.
+//  4. End: a step, or the decrease predicted for it, is too small (decided by the problem), or the damping reaches its
+//     maximum.
 #pragma once
 
 #include <Eigen/Core>

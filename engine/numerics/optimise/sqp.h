@@ -5,15 +5,14 @@
 //     region (Fletcher 1987, Practical Methods of Optimization, section 14.4: the region is a box).
 //  2. If there is no step, the linearised constraints have no common point in the region, and it grows. With elastic
 //     constraints they always have one: then rounding stopped the step, and the region shrinks.
-//  3. The run has converged when the model promises less than `cost_tolerance`.
+//  3. The run has converged when the model predicts a decrease of less than `cost_tolerance`.
 //  4. Candidate: the problem moves the step's end back to the curved constraints (a second-order correction, Nocedal
 //     and Wright 2006, Numerical Optimization, section 18.3) and computes its merit function there.
-//  5. The ratio of the actual to the promised decrease of the merit function decides (Nocedal and Wright, algorithm
+//  5. The ratio of the actual to the predicted decrease of the merit function decides (Nocedal and Wright, algorithm
 //     4.1): the candidate is accepted or the region shrinks; after a good one it grows.
 //  6. H is updated by the curvature of the Lagrangian, from the change of its gradient: BFGS with Powell's damping
-//  (Powell 1978,
-//     Numerical Analysis, Dundee 1977, 144-157), which stays positive definite even if the constraints' curvature is
-//     not. Then 1.
+//     (Powell 1978, Numerical Analysis, Dundee 1977, 144-157), which stays positive definite even if the constraints'
+//     curvature is not. Then 1.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +28,7 @@ namespace tunewright::optimise {
 /// steps more than the results: on random plants `bench/robust_batch` measures the steps, `bench/robust_search` the
 /// results.
 struct SqpConstants {
-    double min_ratio = 0.05;        ///< actual over promised decrease: the least for a candidate to be accepted
+    double min_ratio = 0.05;        ///< actual over predicted decrease: the least for a candidate to be accepted
     double good_ratio = 0.7;        ///< above it the region grows: the model is accurate over the whole step
     double shrink = 0.3;            ///< multiple of the failed step or of the radius, whichever is shorter
     double grow = 2;                ///< multiple of the radius
@@ -57,7 +56,7 @@ concept SqpProblem = requires(Problem& problem, typename Problem::State& state, 
                               const typename Problem::Step& step, double number) {
     /// Linearised constraints always have a common point.
     { Problem::kElastic } -> std::convertible_to<bool>;
-    /// The model's minimum in the region, and its promised decrease (`step.promised`); empty: there is none.
+    /// The model's minimum in the region, and the decrease predicted there (`step.promised`); empty: there is none.
     { problem.step(before, number) } -> std::same_as<std::optional<typename Problem::Step>>;
     { problem.length(step) } -> std::convertible_to<double>;
     /// False ends the run before the step is tried.

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMaxIterations = 100, kMaxHalvings = 40;
 constexpr double kStateRounding = 1e-16;  // of the largest state: the rounding error of a state at 0
-constexpr double kSufficientFall = 1e-4;  // of the decrease that Newton's step promises (Armijo's rule)
+constexpr double kSufficientFall = 1e-4;  // of the decrease that is predicted for Newton's step (Armijo's rule)
 constexpr double kNearFloor = 1e-6;       // of the largest state: smaller moves count as near for any state
 constexpr double kSingularCutoff = 1e-11, kMaxStep = 0.1, kConvergedStep = 1e-9, kConvergedRates = 1e-10;
 

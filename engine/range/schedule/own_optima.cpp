@@ -160,7 +160,7 @@ OwnOptima::Layout OwnOptima::layout(int rows, Interpolation interpolation) const
     const double high = bisect({parts.spread(0, grid.at.size() - 1), 0}, covers, kHalvings).inside;
     Layout layout{.at = {}, .error = high};
     auto ends = parts.cover(high, max);
-    // The error need not grow with the part: then halving the part's length misses that one part covers the whole
+    // The error need not grow with the length of a part: halving a part may then miss that one part covers the whole
     // range.
     if (ends.empty()) ends = {0, grid.at.size() - 1};
     for (const std::size_t end : ends) layout.at.push_back(grid.at[end]);

@@ -71,7 +71,7 @@ public:
     using State = tunewright::range::State;
     struct Step {
         VectorXd p;
-        double promised = 0;  // promised decrease of the merit function
+        double promised = 0;  // predicted decrease of the merit function
         VectorXd multipliers;
     };
     static constexpr bool kElastic = true;

@@ -31,7 +31,7 @@ struct JointOptions {
     double enough = -1;   ///< ln of the cost: the search ends when it is reached with the limits kept
     double hopeless = 0;  ///< ends after two steps with less than this share of the remaining decrease to `enough`; 0:
                           ///< never
-    double cost_tolerance = 1e-5;  ///< ends when the model promises less
+    double cost_tolerance = 1e-5;  ///< ends when the model predicts a smaller decrease
     double margin = 0;             ///< of ln of a limit's ratio: limits are tightened by it
     double simulation_tolerance = 3e-4;
     std::stop_token stop = {};

@@ -47,7 +47,7 @@ public:
         finding_.figures[name] = value;
         return say(figure_text(value)).say(unit.empty() ? unit : " " + unit);
     }
-    /// Adds it to the figures only.
+    /// Adds the value to the figures only.
     FindingBuilder& figure(const std::string& name, double value) {
         finding_.figures[name] = value;
         return *this;

@@ -1,6 +1,6 @@
 // The response of a plant with the full revised IMC controller to constant set point and load from t = 0.
 //
-//   r --> (+) --> [ Q ] --> u --(+)--> [ P ] --> y        C = Q/(1 - G Q): the model runs beside the plant, and Q sees
+//   r --> (+) --> [ Q ] --> u --(+)--> [ P ] --> y        C = Q/(1 - G Q): the model runs in parallel, and Q sees
 //          ^            |        ^ d          |           r - (y - y_m). Both dead times are exact.
 //          |            +--> [ G ] --> y_m    |
 //          +-------- y_m - y <----------------+

@@ -24,7 +24,7 @@ public:
     /// `nodes`: of ascending t; must outlive this. Nodes may be added, and the last ones removed.
     InputHistory(const std::vector<ResponseNode>& nodes, double d) : nodes_(nodes), d_(d) {}
 
-    /// The position of a time: strictly between two neighbouring nodes, or at nodes of equal times, of which the first
+    /// The position of a time: strictly between two neighbouring nodes, or at nodes of equal times: the first
     /// has the value before a jump and the last the one after it.
     struct NodePosition {
         std::size_t first, last;

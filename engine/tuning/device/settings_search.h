@@ -39,7 +39,7 @@ PeakLimits within(const PeakLimits& limits, double margin);
 /// all, to 1e-6. Errors: no_feasible_controller; cancelled.
 enum class Reach {
     wide,
-    near,  ///< the starts are good ones of nearly the same problem: one small simplex
+    near,  ///< the starts are good, from nearly the same problem: one small simplex is enough
 };
 Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const PeakLimits& limits,
                           const std::vector<Settings>& starts, const RunControl& control, Reach reach = Reach::wide);

@@ -102,8 +102,8 @@ TuningMethod emulation_method() {
         "American Control Conference (2004)";
     method.needs = "differential equations that are affine in the input, or a linear plant without direct term";
     method.validity =
-        "operating conditions that a PID can stabilise; a warning says if the PID leaves much of the nonlinear "
-        "controller's action (Remark 7)";
+        "operating conditions that a PID can stabilise; a warning says if the PID does not reproduce much of the "
+        "nonlinear controller's action (Remark 7)";
     method.all_if_nonlinear = true;
     method.bind(described_options(), tune);
     return method;

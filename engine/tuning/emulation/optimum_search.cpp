@@ -163,7 +163,7 @@ private:
             search.keep(start, cost_);
         }
 
-        // True if it ends at a point where no step promises a decrease.
+        // True if it ends at a point where no decrease is predicted for any step.
         bool run() {
             if (cost_.ended.empty()) optimise::levenberg_marquardt(*this, kMaxPolishSteps, kDamping);
             return flat_;

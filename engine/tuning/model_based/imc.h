@@ -27,8 +27,7 @@ struct ImcOptions {
 ///
 ///     maclaurin  the first three terms of the series of s C about 0, with the exact dead time
 ///     pade       the dead time is first replaced: by its 1/1 Pade approximation on a first-order model, by 1 - L s on
-///     a
-///                second-order one; C is then exactly a PID, with a filter on its derivative if n = 2
+///                a second-order one; C is then exactly a PID, with a filter on its derivative if n = 2
 ///
 /// Sources: Morari and Zafiriou, Robust Process Control (1989); Rivera, Morari and Skogestad (1986), Table 1 (pade);
 /// Liu and Gao (2008), Table 2 (maclaurin with n = 2 on the second-order process).

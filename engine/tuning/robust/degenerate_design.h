@@ -1,6 +1,6 @@
 // Detects a PID whose proportional part is negligible at the loop's frequencies. For some resonances, and for plants
 // that are nearly pure dead time, the optimum is integral action, or integral and derivative action. As a PID it has a
-// gain and a Ti near 0, of which only the ratio matters, so neither number means much by itself.
+// gain and a Ti near 0. Only their ratio matters, so neither number means much by itself.
 //
 //   |Kp| < |Ki|/(1000 omega)  or  |Kp| < omega |Kd|/1000
 //

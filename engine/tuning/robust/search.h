@@ -6,13 +6,12 @@
 //     (Garpinger and Hägglund 2008; Hast et al. 2013); run sequential quadratic programming from there (sqp.h).
 //  3. PID: compare a run that ended at a short Td with a PI and with a run from the cheapest point with a long Td.
 //  4. PID: search further local minima. With a limit on Mks, from the cheapest point of each Td; with a set-point step,
-//  from long
-//     Ti; with a slow zero, from long filters; for a resonant plant, from the minima of the wide box, from integral
-//     action alone and from separate sets that wider limits reveal. A rough run estimates each minimum; only one that
-//     may be the best is followed to its end.
+//     from long Ti; with a slow zero, from long filters; for a resonant plant, from the minima of the wide box, from
+//     integral action alone and from separate sets that wider limits reveal. A rough run estimates each minimum; only
+//     one that may be the best is followed to its end.
 //  5. For the weighted objective, run from the optima of its two parts.
-//  6. If the cost has kinks (set-point steps, resonant plants), refine the best design by simplices while they improve
-//  it.
+//  6. If the cost has kinks (set-point steps, resonant plants), refine the best design by simplices while they
+//     improve it.
 //
 // The result is the cheapest design. The other searches are those of the paper, Nelder-Mead and gridding over (Ti, Td):
 // Kp is eliminated as the cheapest gain within the limits, at an end of a gap between the forbidden gains (Garpinger

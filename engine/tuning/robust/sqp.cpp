@@ -33,7 +33,8 @@ struct DesignSqpConstants {
     double max_less_gain = 0.3;           ///< of ln Kp
     double max_restored_radii = 4;        ///< a restoration that moves further gives another design
     int small_steps_to_end = 2;           ///< successive steps, each within the tolerance of the cost
-    double max_of_promise = 5;            ///< a run rarely gains more than this multiple of the model's promise
+    double max_of_promise = 5;            ///< a run rarely gains more than this multiple of the decrease that the model
+                                          ///< predicts
     double telling_step = 1e-3;           ///< the curvature after shorter steps is not passed on
     double same_peak = 0.3;               ///< in ln omega: a peak that moves further counts as another one
     double min_radius = 1e-5, max_radius = 1;

@@ -4,7 +4,7 @@
 //
 //  1. Linearise the cost and the largest peaks at the current design; the quadratic program gives a step.
 //  2. Restore feasibility by Newton steps on the violated peaks, and check the stability.
-//  3. Compute the cost there and accept or reject the step by the ratio of actual to promised decrease.
+//  3. Compute the cost there and accept or reject the step by the ratio of the actual to the predicted decrease.
 //  4. Update the Hessian by the change of the gradients, and the trust region by the ratio.
 #pragma once
 
@@ -19,13 +19,13 @@ namespace tunewright::robust {
 
 struct SqpOptions {
     int max_iterations = 40;
-    double cost_tolerance = 1e-5;  ///< stops if the model promises a smaller decrease of ln(cost)
+    double cost_tolerance = 1e-5;  ///< stops if the model predicts a smaller decrease of ln(cost)
     double simulation_tolerance = 3e-4;
     double trust_radius = 0.5;                ///< in each logarithm
     bool stable_start = false;                ///< the start's loop is known to be stable
     std::optional<Curvature> curvature = {};  ///< curvature of a design nearby
-    /// ln(cost) that a run must reach: it ends, not converged, if a multiple of the model's promise does not lead below
-    /// it.
+    /// ln(cost) that a run must reach: if not even a multiple of the decrease that the model predicts leads below it,
+    /// the run ends, not converged.
     double wanted = std::numeric_limits<double>::infinity();
 };
 

@@ -103,7 +103,7 @@ std::optional<DesignResult> search_from(const MinPeak& min, DesignProblem& probl
 }
 
 constexpr double kMaxShortLagRatio = 0.01;      // relative to the dead time
-constexpr double kTrustInOtherCurvature = 0.1;  // share of the decrease promised by the curvature for another limit
+constexpr double kTrustInOtherCurvature = 0.1;  // share of the decrease predicted by the curvature for another limit
                                                 // that is trusted
 
 /// With lags so short compared with the dead time, a derivative gains hardly anything and has local minima with a high

@@ -58,8 +58,8 @@ public:
     /// Called once for each answer, on the thread that gave it.
     void observe(std::function<void(const Answered&)> observer) { observer_ = std::move(observer); }
 
-    // For the Server (Application). The refusal of a request of which only the head is known: by the guard, or because
-    // no route accepts it.
+    // For the Server (Application). The refusal of a request when only its head is known: by the guard, or because no
+    // route accepts it.
     std::optional<Response> admit(Request& request) const;
     bool streams(const Request& head) const;
     Response handle(Request request) const;

@@ -60,7 +60,7 @@ api::JobOutcome Workers::compute(const std::shared_ptr<HeldJob>& held) {
     try {
         return settings_.run({held->job.request, held->job.request_hash}, control);
     } catch (const std::exception& fault) {
-        log_error("job " + held->job.id + " met a fault: " + fault.what());
+        log_error("job " + held->job.id + " failed by an internal error: " + fault.what());
         return {Status::failed, "",
                 fault_problem("The computation failed because of an internal error of the service; its log has details "
                               "under the job's id.")};

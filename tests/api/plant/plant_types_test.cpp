@@ -108,7 +108,7 @@ TEST(PlantTypes, EveryParameterIsReadAndSetByItsName) {
     for (const auto& [json, plant] : plant_of_each_type()) {
         const Json written = Json::parse(encode(plant_contract(), plant));
         for (const auto& [name, value] : written.items()) {
-            // A state space is moved by its gain, of which D is a part.
+            // A state space is moved by its gain, and D is a part of it.
             if (!value.is_number() || name == "D") continue;
             EXPECT_EQ(parameter(plant, name), value.get<double>()) << json << name;
             Plant moved = plant;

@@ -92,7 +92,7 @@ TEST(RecordKind, MovesOfUAreToldByTheirTimesAndJitterIsNone) {
     Steps many;
     for (int k = 1; k < 60; ++k) many.push_back({5.0 * k, k % 2 ? 1.0 : -1.0});
     const auto first = move_times(*clean_record(simulate(even_times(600, 0.5), -1, 0, many, first_order(2, 8, 2))));
-    EXPECT_EQ(first.size(), 20u) << "no more are told";
+    EXPECT_EQ(first.size(), 20u) << "no more are named";
     EXPECT_TRUE(std::ranges::is_sorted(first));
 }
 

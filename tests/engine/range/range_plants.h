@@ -5,8 +5,8 @@
 
 namespace tunewright::range_tests {
 
-/// A conical tank with free outflow behind a pipe: dh/dt = (q - c sqrt(h))/(pi (R/H)^2 h^2), R = 18 cm at H = 60 cm.
-/// The gain of the steady level to the inflow is 2 sqrt(h)/c, that of its rate 1/(pi (R/H)^2 h^2).
+/// A conical tank with an inlet pipe and free outflow: dh/dt = (q - c sqrt(h))/(pi (R/H)^2 h^2), R = 18 cm at H = 60
+/// cm. The gain of the steady level to the inflow is 2 sqrt(h)/c, that of its rate 1/(pi (R/H)^2 h^2).
 inline NonlinearPlant conical_tank(double h) {
     return {.states = {{"h", h}},
             .parameters = {{"c", 40.0}, {"a", 0.09 * 3.14159265358979323846}},

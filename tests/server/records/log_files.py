@@ -246,7 +246,7 @@ def public_logs(test):
             ["Date/Time;PID1/OUT.CV;PID1/PV.CV"]
             + ["%s;%s;%s" % (stamp(t, "%d.%m.%Y %H:%M:%S"), str(u).replace(".", ","), str(y).replace(".", ","))
                for t, u, y in rows]),
-        "qualities beside values": joined(
+        "qualities next to values": joined(
             ["DateTime,TIC.PV,TIC.PV.Quality,TIC.OP,TIC.OP.Quality"]
             + ["%s.000,%.2f,192,%g,192" % (stamp(t, "%Y-%m-%d %H:%M:%S"), y, u) for t, u, y in rows]),
         "espresso machine": json.dumps({"id": 12, "datapoints": {

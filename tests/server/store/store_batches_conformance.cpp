@@ -18,7 +18,7 @@ TEST_P(StoreConformance, ABatchIsReceivedPieceByPieceAndItsEntriesAreJobs) {
     open_batch(made);
     EXPECT_FALSE(batch("x").sealed);
     EXPECT_TRUE(add_waiting("x", 0, 2));
-    EXPECT_TRUE(add_entries("x", {})) << "a sign of life";
+    EXPECT_TRUE(add_entries("x", {})) << "an empty piece";
     EXPECT_TRUE(add_waiting("x", 2, 1));
     const JobRecord claimed = claim().value();
     EXPECT_EQ(claimed.id, "x-0") << "before it is sealed";

@@ -145,7 +145,7 @@ test("loops that failed say why; gain and risk order the table", async () => {
   });
 });
 
-test("a limit that is no number is told by its label, and no loop is sent", async () => {
+test("a limit that is no number is named by its label, and no loop is sent", async () => {
   await withPage("#/jobs", {}, async (page) => {
     for (const [text, sentence] of [
       ["abc", 'Largest Ms "abc" is not a number. Write for example 1.25, 1,25 or 1e-3.'],

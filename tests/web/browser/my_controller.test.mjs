@@ -167,7 +167,7 @@ test("from a record to the settings of three products, each read back as the con
   });
 });
 
-test("beside settings in seconds the notes of a loop in minutes say their unit", async () => {
+test("next to settings in seconds, the notes of a loop in minutes say their unit", async () => {
   await withPage("#/new/fopdt?K=1.25&T=40&L=8", {}, async (page) => {
     await page.getByLabel("Time unit").fill("min");
     await page.getByRole("button", { name: "Tune this model" }).click();

@@ -171,7 +171,7 @@ for (const [what, text, doubt] of [
   ["a plant slower than a day", slower, /The identified plant is slower than a day/],
   ["any other", milliseconds, /The unit of the record's times is not given/],
 ])
-  test(`a unit of time that nobody named is not sent, and its doubt stands beside the result: ${what}`, async () => {
+  test(`a unit of time that nobody named is not sent, and its doubt stands next to the result: ${what}`, async () => {
     await withPage("", {}, async (page) => {
       const asked = page.waitForRequest((request) => request.url().endsWith("/v1/identify"));
       await dropFile(page, ".drop", "trend.csv", text);

@@ -94,7 +94,7 @@ for (const [product, more] of [
   });
 }
 
-test("the ideal design typed into a firmware: the loop as built has its own overshoot in the table, and one lag is named", async () => {
+test("the ideal design typed into a firmware: the implemented loop has its own overshoot in the table, and one lag is named", async () => {
   await withPage("", {}, async (page) => {
     const settled = watchCalls(page);
     await page.evaluate(() =>
@@ -120,7 +120,7 @@ test("the ideal design typed into a firmware: the loop as built has its own over
     const cells = await page.locator("table.built tr", { hasText: "Overshoot" }).locator("td").allInnerTexts();
     const built = overshootOf(controllers[0]);
     const ideal = performance.setpoint.overshoot_percent;
-    assert.ok(built > 20 && ideal < 5.05, `${ideal} %, as built ${built} %`);
+    assert.ok(built > 20 && ideal < 5.05, `${ideal} %, implemented ${built} %`);
     assert.deepEqual(cells.slice(0, 2).map(Number), [three(ideal), three(built)]);
     assert.ok(Math.abs(Number(cells[2]) - (built - ideal)) < 0.06, cells[2]);
     const lag = three(controller.setpoint_filter.T);
@@ -165,7 +165,7 @@ test("while the slider is held, what is reached follows each answer", async () =
   });
 });
 
-test("an integral time by hand keeps to no overshoot: what it reaches stands beside what was asked of the design", async () => {
+test("an integral time by hand keeps to no overshoot: what it reaches stands next to what was asked of the design", async () => {
   await withPage(PLANT, {}, async (page) => {
     const settled = watchCalls(page);
     await openDesign(page);

@@ -120,7 +120,7 @@ test("a relay that cannot oscillate says why at its field", async () => {
   );
 });
 
-test("results beside a request that was refused are marked as those of the one before", async () => {
+test("results next to a request that was refused are marked as those of the one before", async () => {
   await withPage("#/relay/fopdt?K=1&T=10&L=2", {}, async (page) => {
     const mark = page.getByText("These results belong to the last answered request");
     const results = page.locator(".relay-results");

@@ -97,7 +97,7 @@ test("of several steps in a row the last is shown and kept, however late the oth
   });
 });
 
-test("the full controller stands beside its PID, in figures and in its load response", async () => {
+test("the full controller stands next to its PID, in figures and in its load response", async () => {
   await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
     // In the form of the service's answer, with arbitrary figures.
     await page.route("**/v1/jobs/*", async (route) => {

@@ -46,7 +46,7 @@ test("the first press on Tune counts, however long a unit was typed before", asy
   });
 });
 
-test("an outage that is over is not told on Start any more", async () => {
+test("an outage that is over is no longer reported on Start", async () => {
   await withPage(
     "#/new/fopdt?K=1.25&T=40&L=8",
     {},

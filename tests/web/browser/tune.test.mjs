@@ -84,7 +84,7 @@ test("settings change their form and are copied with all their digits", async ()
   });
 });
 
-test("a field that cannot be read says so beside itself, and the summary leads to it", async () => {
+test("a field that cannot be read says so next to itself, and the summary leads to it", async () => {
   await withPage("", {}, async (page) => {
     await page.getByLabel("T (s)", { exact: true }).fill("1,2,3");
     await page.getByRole("button", { name: "Tune this model" }).click();
@@ -104,7 +104,7 @@ test("a field that cannot be read says so beside itself, and the summary leads t
   });
 });
 
-test("a filter alone is no controller of today: Kp is asked for, and the filter's own fault is told", async () => {
+test("a filter alone is no controller of today: Kp is asked for, and the filter's own fault is reported", async () => {
   await withPage("#/new/fopdt?K=1.25&T=40&L=8", {}, async (page) => {
     await page.getByRole("textbox", { name: "Tf" }).fill("abc");
     await page.getByRole("button", { name: "Tune this model" }).click();

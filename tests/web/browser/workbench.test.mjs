@@ -96,7 +96,7 @@ test("the sliders stand where they were left, after Back and by the header's lin
   });
 });
 
-test("a limit that the method does not take is told at its field, and the address keeps the last good one", async () => {
+test("a limit that the method does not take is reported at its field, and the address keeps the last good one", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);
     const field = page.locator(".controls").getByRole("textbox", { name: "Robustness Ms" });
@@ -128,7 +128,7 @@ test("what is wrong with a typed value goes with the text", async () => {
   });
 });
 
-test("no number is cut off: fields of settings by hand, all figures beside today's", async () => {
+test("no number is cut off: fields of settings by hand, all figures next to today's", async () => {
   const cut = (list) =>
     list.filter((box) => box.scrollWidth > box.clientWidth).map((box) => box.value ?? box.getAttribute("aria-label"));
   // A gain with a sign, and times of a few thousandths.

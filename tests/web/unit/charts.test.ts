@@ -51,7 +51,7 @@ test("the best of the ranking and today's settings are drawn, four at most, toda
   );
 });
 
-test("entries of one method are told apart by the option that differs", () => {
+test("entries of one method are distinguished by the option that differs", () => {
   assert.deepEqual(
     entryNames([make("robust", { options: { Ms: 1.4 } }), make("robust", { options: { Ms: 1.6 } }), make("baseline")]),
     ["robust Ms 1.4", "robust Ms 1.6", "today"],

@@ -181,7 +181,7 @@ test("the table as a file has every column, all digits, remarks and reasons", ()
   assert.equal(notesSummary(result.controllers[2]!), "unstable, outside validity");
 });
 
-test("variants are told apart by what their titles end with", () => {
+test("variants are distinguished by what their titles end with", () => {
   const named = (title: string): Entry => ({ method: "cohen_coon", title });
   assert.deepEqual(entryNames([named("Cohen-Coon (PI)"), named("Cohen-Coon (PID)"), { method: "simc" }]), [
     "cohen coon PI",
@@ -204,7 +204,7 @@ test("a row's name is its title with the variant; authors go where that leaves n
   ]);
 });
 
-test("at first the best is drawn beside today's settings, or the two best", () => {
+test("at first the best is drawn with today's settings, or the two best", () => {
   assert.deepEqual(defaultOverlay({ ...result, ranking: [4, 5, 1, 0, 2] }), [4, 5]);
   assert.deepEqual(defaultOverlay({ controllers: result.controllers.slice(0, 5), ranking: [4, 1, 0, 2] }), [1, 4]);
 });

@@ -170,7 +170,7 @@ const nonlinear = (method: string): Entry => ({
   linear: { responses: { setpoint: { ...response, y: [0, 0.9] }, load: response } },
 });
 
-test("beside a nonlinear plant's responses stand the linear model's, thin, where they do not crowd", () => {
+test("a nonlinear plant's responses are drawn with the linear model's, thin, where they do not crowd", () => {
   const two: Result = { controllers: [nonlinear("emulation"), nonlinear("robust")] };
   const frame = responseFrame("setpoint", drawnEntries(two, [0, 1]), undefined);
   assert.deepEqual(

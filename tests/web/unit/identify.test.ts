@@ -192,7 +192,7 @@ test("a limit cycle is given with the plant's ultimate point and the describing 
   assert.match(rows[2]!.meaning, /−127°/);
 });
 
-test("records given as numbers and as text are told apart by their samples alone", () => {
+test("records given as numbers and as text are distinguished by their samples alone", () => {
   const arrays = { dt: 2, u: [0, 1], y: [5, 6], kind: "relay", u0: 0, from: 1 };
   assert.deepEqual(samplesOf(arrays), { dt: 2, u: [0, 1], y: [5, 6] });
   assert.equal(csvOf(arrays), "t,u,y\n0,0,5\n2,1,6");

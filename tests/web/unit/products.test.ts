@@ -170,7 +170,7 @@ const built = (Ms_percent: number | null, load_IAE_percent: number | null, diffe
   difference: { Ms_percent, load_IAE_percent, overshoot_points: null, differs },
 });
 
-test("the loop as built stands beside the ideal one; what the service says to differ is marked", () => {
+test("the implemented loop stands next to the ideal one; what the service says to differ is marked", () => {
   const ideal = { robustness: robustness(1.4), performance: { load: { IAE: 8.4 } } };
   assert.deepEqual(builtRows(ideal, built(2.857, -0.36, ["Ms"])), [
     { label: "Ms", ideal: "1.40", built: "1.44", difference: "+2.9 %", far: true },
@@ -187,7 +187,7 @@ test("the loop as built stands beside the ideal one; what the service says to di
   );
 });
 
-test("the overshoot as built stands beside the ideal loop's, in percent of the step", () => {
+test("the implemented overshoot stands next to the ideal loop's, in percent of the step", () => {
   const over = (percent: number | null) => ({ setpoint: { overshoot_percent: percent } });
   const loop = (percent: number, points: number | null, differs: Differs = []): Implemented => {
     const of = built(0, 0, differs);

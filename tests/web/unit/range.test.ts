@@ -235,7 +235,7 @@ test("names and units leave a design as it is; plants and limits do not", () => 
   assert.ok(!sameDesign(asked, { ...asked, points: [{ at: 30, plant: fopdt(4, 21, 4) }, loads.points![1]!] }));
 });
 
-test("the plots show the design with its limits, then the moved rows beside the one setting of the design", () => {
+test("the plots show the design with its limits, then the moved rows next to the one setting of the design", () => {
   const moved: RangeContent = { ...content, one: null, curves: { ...content.curves, at: [30, 50, 100], one: null } };
   const shown = { designed: content, moved: null, rows: content.schedule!.rows, Ms: 1.4, IAE: 1.05, units };
   const [Ms, IAE] = robustnessFrame(shown).panes;

@@ -48,7 +48,7 @@ test("beyond the curve nothing is invented: no point, and no chart without a tim
   assert.ok(Math.abs(interpolate([0.4, 0.8], [2.4, 1.6], 0.5)! - 2.2) < 1e-12);
 });
 
-test("figures of the PID stand beside the full controller's, and what has none says why", () => {
+test("figures of the PID stand next to the full controller's, and what has none says why", () => {
   const full = { robustness: { Ms: 1.5 }, load: { peak: 0.48, IAE: 11.5 } };
   const entry: Entry = {
     method: "rimc",

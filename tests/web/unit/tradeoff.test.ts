@@ -43,7 +43,7 @@ test("the plane shows the rule's curves, the corner and the controller, all in v
   assert.match(frame.description, /today: J_r 1\.50, J_d 3\.00\./);
 });
 
-test("degradation stands over the Ms that is reached, and every allowed level beside what comes of it", () => {
+test("degradation stands over the Ms that is reached, and every allowed level next to its result", () => {
   const frame = degradationFrame([item])!;
   assert.deepEqual(frame.panes[0]!.traces[0]!.x, [2, 1.7, 1.4]);
   assert.deepEqual(frame.panes[0]!.traces[1]!.y, [0, 0.25, 0.55]);
@@ -66,7 +66,7 @@ test("without a profile only the controllers are drawn; without figures nothing 
   assert.equal(tradeoffFrame([{ name: "a", tradeoff: undefined }], "s"), null);
 });
 
-test("where the service has no indices, its reason is told instead of empty charts", () => {
+test("where the service has no indices, its reason is shown instead of empty charts", () => {
   const none = { ...figures(0, 0, 0, 1.4), J_r: null, J_d: null, why_null: { J_r: "The plant integrates." } };
   const refused = { name: "a", tradeoff: { model: none, plant: none } };
   assert.ok(!isKnown(refused) && isKnown(item));

@@ -99,7 +99,7 @@ test("a figure that is null carries the service's reason", () => {
   }
 });
 
-test("the limit on the overshoot stands beside it, on Design and in the table, where the verdict says that there is more", () => {
+test("the limit on the overshoot stands next to it, on Design and in the table, where the verdict says that there is more", () => {
   const figures = figureGroups(unitNames(undefined)).flatMap((group) => group.rows);
   const columns = comparisonColumns(unitNames(undefined));
   const texts = (percent: number | null, limit?: number, who = "asked"): string[] => {

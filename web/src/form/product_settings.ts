@@ -44,7 +44,7 @@ function fieldOf(parameter: ProductParameter): SettingField {
   };
 }
 
-/** The texts of which a parameter takes one; empty: a number. A setting that is not a parameter has its own text
+/** The texts from which a parameter takes one; empty: a number. A setting that is not a parameter has its own text
     alone. */
 export const choicesOf = (product: Product, name: string): string[] =>
   settingFields(product).find((field) => field.name === name)?.choices.map(String) ?? ["-"];

@@ -22,7 +22,7 @@ export interface RangeHandles extends PlotHandles {
 
 export interface HandleEvents {
   onHold(held: boolean): void;
-  /** A row was moved to that place, or closer to it; `released`: the drag has ended, or a key was used. */
+  /** A row was moved to `at`; `released`: the drag has ended, or a key was used. */
   onMove(index: number, at: number, released: boolean): void;
 }
 

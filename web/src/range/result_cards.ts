@@ -98,14 +98,14 @@ export function pointRows(content: RangeContent, units: UnitNames): { head: stri
     ...(content.one ? [withUnit("IAE", IAE), "IAE over own", "Ms"] : []),
   ];
   const rows = content.points.map(({ at, plant, model }, index) => {
-    const price = content.one?.points[index];
+    const point = content.one?.points[index];
     const fit = model ? `, fit ${formatNumber(model.fit_percent)} %` : "";
     return [
       formatSetting(at),
       `${placePlant(content, at, plant, units)}${fit}`,
-      price ? settingWords({ ...price.own, Tf: price.own.filter?.Tf ?? 0 }, units) : DASH,
-      formatNumber(price?.own_IAE),
-      ...(content.one ? [formatNumber(price?.IAE), formatNumber(price?.relative_IAE), formatNumber(price?.Ms)] : []),
+      point ? settingWords({ ...point.own, Tf: point.own.filter?.Tf ?? 0 }, units) : DASH,
+      formatNumber(point?.own_IAE),
+      ...(content.one ? [formatNumber(point?.IAE), formatNumber(point?.relative_IAE), formatNumber(point?.Ms)] : []),
     ];
   });
   return { head, rows };

@@ -194,7 +194,7 @@ Product ac800m() {
         .families = {"800xA", "AC 800M", "Freelance"},
         .form = Form::ideal,
         .law = "out = Gain [ (b SP - PV) + (1/(Ti s)) (SP - PV) - (Td s/(Tf s + 1)) PV ] (believed)",
-        .gain_basis = "not read",
+        .gain_basis = "not known",
         .parameters =
             {
                 {.name = "Gain", .label = "Gain", .role = ParameterRole::gain, .term = kKp, .range = {0, kUnbounded}},
@@ -233,7 +233,7 @@ Product ac800m() {
                    .reverse = std::string("reverse"),
                    .text = "Direction sets the sign."},
         .algorithm = {.published = false,
-                      .text = "not read",
+                      .text = "not known",
                       .anti_windup = "tracking",
                       .sample_time_text = "the task"},
         .evidence = {.level = EvidenceLevel::unverified, .unverified = {"everything: no manual could be read"}},

@@ -101,7 +101,7 @@ Product px4() {
                         .standard = 0.0,
                         .remark = "never negative, so b is at least 1"}},
         .filter = {FilterKind::unknown, 0,
-                   "IMU_DGYRO_CUTOFF filters the angular acceleration before the controller; its order was not read."},
+                   "IMU_DGYRO_CUTOFF filters the angular acceleration before the controller; its order is not known."},
         .weights = {1, 0, "FF makes b = 1 + FF/(K P); D acts on the measured angular acceleration."},
         .action = kSigned,
         .algorithm = {.integral = IntegralRule::forward,

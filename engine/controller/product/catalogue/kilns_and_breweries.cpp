@@ -48,7 +48,7 @@ Product kiln_controller() {
                       .anti_windup = "the integral stops outside pid_control_window; within it nothing limits it",
                       .sample_time_s = 2,
                       .sample_time_text = "sensor_time_wait, 2 s by default; measured in whole seconds"},
-        .traps = {"pid_ki is a divisor: a larger pid_ki is a weaker integral action.",
+        .traps = {"pid_ki is a divisor: a larger pid_ki gives a weaker integral action.",
                   "Outside pid_control_window it is an on/off controller; the window is 5 degrees by default.",
                   "Newer versions compute in degrees Celsius whatever temp_scale is; older ones in temp_scale.",
                   "Elapsed time is counted in whole seconds, which makes short cycles uneven."},
@@ -104,7 +104,8 @@ Product craftbeerpi() {
                       .sample_time_text = "5 s, fixed in the code and assumed by the formulas"},
         .traps = {"Above the boil threshold, 80 degrees by default, it heats with full power.",
                   "CraftBeerPi 4 reads the threshold under a misspelt name: a changed one has no effect.",
-                  "Its first derivative is that of a step from 0 degrees, which lowers the first output.",
+                  "Its first derivative is computed as if the measurement had stepped from 0 degrees, which lowers the "
+                  "first output.",
                   "The integral rests while the output is exactly 0 or at its maximum."},
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"the whole plugin of version 4 and the class PIDArduino of version 3"},
@@ -146,14 +147,14 @@ Product brewblox() {
             },
         .filter =
             {FilterKind::unknown, 0,
-             "The derivative is that of a filtered measurement over about Td/2; which filter was not read. P and I "
+             "The derivative is that of a filtered measurement over about Td/2, by a filter that is not known. P and I "
              "use the filter of the sensor pair."},
         .weights = {1, 0, "P acts on the error, D on the measurement."},
         .action = {.kind = Action::Kind::signed_gain, .text = "A negative Kp cools."},
         .algorithm = {.derivative = DerivativeRule::difference,
                       .text = "position algorithm",
-                      .anti_windup = "back-calculation from what the actuator reaches, with a gain of 3; the integral "
-                                     "does not change its sign by it",
+                      .anti_windup = "back-calculation from what the actuator reaches, with a gain of 3, which never "
+                                     "changes the sign of the integral",
                       .sample_time_s = 1,
                       .sample_time_text = "1 s, which the integral assumes"},
         .traps = {"At a set point of 100 degC or more the boil mode switches the integral off.",

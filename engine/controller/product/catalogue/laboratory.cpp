@@ -47,7 +47,7 @@ Product labview() {
                  .range = kShare,
                  .standard = 0.0},
             },
-        .filter = {FilterKind::none, 0, "None in PID.vi; PID Advanced has alpha, whose scale was not read."},
+        .filter = {FilterKind::none, 0, "None in PID.vi; PID Advanced has alpha, whose scale is not known."},
         .weights = {1, 0, "beta and gamma are those of PID Advanced; PID.vi has 1 and 0."},
         .action = kSigned,
         .algorithm = {.integral = IntegralRule::trapezoidal,

@@ -47,7 +47,7 @@ Product omron() {
                  .standard = std::string("000"),
                  .remark = "000 stands for 0.65, which is b = 0.35; 100 to 199 for 0.00 to 0.99"},
             },
-        .filter = {FilterKind::unknown, 0, "The derivative is filtered, Td s/(lambda Td s + 1); lambda was not read."},
+        .filter = {FilterKind::unknown, 0, "The derivative is filtered, Td s/(lambda Td s + 1); lambda is not known."},
         .weights = {0.35, 0,
                     "The block filters the set point by (1 + (1 - alpha) Ti s)/(1 + Ti s), which is b = 1 - alpha "
                     "in steps of 0.01."},
@@ -115,7 +115,7 @@ Product omron_nj() {
                  .shape = Shape::one_minus_b,
                  .range = kShare},
             },
-        .filter = {FilterKind::unknown, 0, "The derivative is filtered, Td s/(lambda Td s + 1); lambda was not read."},
+        .filter = {FilterKind::unknown, 0, "The derivative is filtered, Td s/(lambda Td s + 1); lambda is not known."},
         .weights = {1, 0,
                     "The instruction filters the set point by (1 + (1 - alpha) Ti s)/(1 + Ti s), which is b = 1 - "
                     "alpha."},

@@ -133,7 +133,7 @@ Product slc() {
                  .resolution = kWholeNumber},
                 fixed_choice("RG", "RG", 1.0, "the range of KC and TI: 1 for steps of 0.01"),
             },
-        .filter = {FilterKind::unknown, 0, "Whether the derivative is filtered could not be read."},
+        .filter = {FilterKind::unknown, 0, "Whether the derivative is filtered is not known."},
         .weights = {1, 0, "P acts on the error, D on the measurement."},
         .action = {.kind = Action::Kind::switched,
                    .name = "CM",

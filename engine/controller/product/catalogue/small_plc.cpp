@@ -56,7 +56,7 @@ Product dpid() {
                            "directions the other way round."},
         .algorithm = {.published = false,
                       .text = "position algorithm",
-                      .anti_windup = "MV is limited to MV_MIN and MV_MAX; the rule for the integral was not read",
+                      .anti_windup = "MV is limited to MV_MIN and MV_MAX; the rule for the integral is not known",
                       .sample_time_text = "CYCLE"},
         .traps = {"PID_EQ FALSE uses Ti_Ki and Td_Kd as gains.",
                   "Within the error dead band ERR_DBW the error counts as 0 once PV has crossed SV."},
@@ -121,7 +121,7 @@ Product direct_logic() {
                    .text = "Forward acting is for a measurement that rises with the output, as in heating: the words "
                            "are the opposite of the usual ones."},
         .algorithm = {.text = "position or velocity, by mode word 1",
-                      .anti_windup = "not read",
+                      .anti_windup = "not known",
                       .sample_time_text = "Addr + 7; the maker's example has 0.05 s"},
         .traps = {"Forward acting is what others call reverse acting.", "Bit 4 of mode word 2 makes RESET minutes.",
                   "With separate data formats the gain is counts of the output per count of the measurement.",

@@ -103,7 +103,7 @@ Product centum() {
                              {.value = std::string("I-PD"), .b = 0, .c = 0}},
                  .remark = "Another type selects the structure by the mode."},
             },
-        .filter = {FilterKind::unknown, 0, "Whether the derivative is filtered could not be read."},
+        .filter = {FilterKind::unknown, 0, "Whether the derivative is filtered is not known."},
         .weights = {1, 0, "The type sets both: PID 1 and 1, PI-D 1 and 0, I-PD 0 and 0."},
         .action = {.kind = Action::Kind::switched,
                    .name = "action",

@@ -60,7 +60,7 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
     if (problem.pid && problem.filter.Tf_over_Td)
         ended = kTiedDecade * reference / (*problem.filter.Tf_over_Td * kMinTd);
     if (std::isfinite(ended) && (plant.pole_excess() == 0 || problem.limits.Mks)) high = std::max(high, ended);
-    // Up to its fastest lag the plant's gain may not fall, and an unfiltered derivative makes L grow there.
+    // The plant's gain may stay constant up to its fastest lag, and an unfiltered derivative makes L grow there.
     high = std::max(
         high, std::min({ended, kMaxFrequencyOverFastestRoot * fastest_root(plant), kMaxFrequencyRatio * reference}));
     const double low = reference * std::pow(10, -kDecades), ratio = std::pow(10, 1.0 / kPointsPerDecade);

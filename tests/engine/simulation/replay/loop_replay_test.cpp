@@ -1,4 +1,4 @@
-// A replayed hour beside loops written a second time, and what superposition says of any model.
+// A replayed hour compared with loops that are written a second time, and with superposition for any model.
 #include "engine/simulation/replay/loop_replay.h"
 
 #include <gtest/gtest.h>

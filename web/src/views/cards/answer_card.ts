@@ -183,7 +183,7 @@ interface RowOptions {
   withToday: boolean;
   /** The value on the screen when it is copied. */
   current(): string | null;
-  /** The texts of which one can be chosen; empty: a text is typed; null: the value is only shown. */
+  /** The texts from which one can be chosen; empty: a text is typed; null: the value is only shown. */
   choices: string[] | null;
   announce(sentence: string): void;
   onType(): void;

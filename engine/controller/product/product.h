@@ -186,7 +186,7 @@ struct GainScheduling {
 ///   {name}            the setting as it is typed
 ///   {name|other}      `other` if there is no such setting
 ///   {name=value:A/B}  A if the setting is typed as `value`, else B
-///   {sample_time_s}   also _ms and _us: the block's period
+///   {sample_time_s}   the block's period, also _ms and _us; {{ stands for an opening brace
 /// A line with a setting or a period that does not exist is left out.
 struct Snippet {
     std::string_view name = "";  ///< language or file, and the place in it

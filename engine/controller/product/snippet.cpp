@@ -33,6 +33,11 @@ public:
             const auto [before, rest] = split(text, '{');
             out += before;
             if (!rest) return out;
+            if (rest->starts_with('{')) {
+                out += '{';
+                text = rest->substr(1);
+                continue;
+            }
             const auto [placeholder, after] = split(*rest, '}');
             const auto filled = value(placeholder);
             if (!filled) return std::nullopt;

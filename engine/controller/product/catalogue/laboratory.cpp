@@ -123,14 +123,19 @@ Product epics() {
                       .sample_time_text = "the scan, at least MDT; measured"},
         .traps = {"KI = 0 does not hold the integral but sets it to DRVL.", "It computes in single precision."},
         .evidence = {.level = EvidenceLevel::read,
-                     .read = {"do_pid"},
-                     .unverified = {"wording of the record's manual"},
-                     .sources = {"epics-modules/std stdApp/src/devEpidSoft.c"}},
+                     .read = {"do_pid", "fields and units in the record's manual", "records in a database file"},
+                     .sources = {"epics-modules/std stdApp/src/devEpidSoft.c, docs/epidRecord.md at 0abc7aa5"}},
         .example = of_design_a({{"KP", 1.5}, {"KI", 0.00833333}, {"KD", 20.0}}),
         .snippets = {{"IOC shell, for the record loop",
                       "dbpf loop.KP {KP}\n"
                       "dbpf loop.KI {KI}\n"
-                      "dbpf loop.KD {KD}"}},
+                      "dbpf loop.KD {KD}"},
+                     {"Database, for the record loop",
+                      "record(epid, \"loop\") {{\n"
+                      "    field(KP, \"{KP}\")\n"
+                      "    field(KI, \"{KI}\")\n"
+                      "    field(KD, \"{KD}\")\n"
+                      "}"}},
     };
 }
 

@@ -159,12 +159,15 @@ Product fb41() {
             {.level = EvidenceLevel::partly,
              .read = {"position algorithm, parallel parts, percent, dead band and switches, of a call compatible "
                       "block",
-                      "transfer function with TM_LAG, of a third party"},
-             .unverified = {"Siemens' own text", "defaults of GAIN, TI, TD and TM_LAG",
-                            "defaults of P_SEL, I_SEL and D_SEL", "limits of TM_LAG against CYCLE",
+                      "transfer function with TM_LAG, of a third party",
+                      "names, types and defaults of the parameters, of a third party",
+                      "spelling of times with decimals in SCL"},
+             .unverified = {"Siemens' own text about the block", "limits of TM_LAG against CYCLE",
                             "TI = 0 as integral off"},
              .sources = {"VIPA SPEED7 manual pp. 839-840 (call compatible FB41)",
                          "industrialmonitordirect.com, Siemens FB41 TM_LAG (third party)",
+                         "blog.csdn.net 112944724, table of the parameters of FB41 (third party)",
+                         "S7-SCL manual, simple time format (TIME#45.12M, T#300MS)",
                          "SIMATIC PID Control C79000-G7076-C516 (its text could not be read)"}},
         .example = of_design_a({{"GAIN", 3.0},
                                 {"TI_s", 120.0},
@@ -173,6 +176,14 @@ Product fb41() {
                                 {"P_SEL", true},
                                 {"I_SEL", true},
                                 {"D_SEL", true}}),
+        .snippets = {{"SCL of STEP 7, for the instance CONT_C_DB",
+                      "\"CONT_C_DB\".GAIN := {GAIN};\n"
+                      "\"CONT_C_DB\".TI := T#{TI_s}S;\n"
+                      "\"CONT_C_DB\".TD := T#{TD_s}S;\n"
+                      "\"CONT_C_DB\".TM_LAG := T#{TM_LAG_s}S;\n"
+                      "\"CONT_C_DB\".P_SEL := {P_SEL=true:TRUE/FALSE};\n"
+                      "\"CONT_C_DB\".I_SEL := {I_SEL=true:TRUE/FALSE};\n"
+                      "\"CONT_C_DB\".D_SEL := {D_SEL=true:TRUE/FALSE};"}},
     };
 }
 

@@ -134,9 +134,17 @@ Product versatile() {
                       .sample_time_text = "cycle_min, in minutes"},
         .traps = {"It is not a PID: it has no Ti and Td, and coef_ext removes the steady-state error."},
         .evidence = {.level = EvidenceLevel::read,
-                     .read = {"the whole class"},
-                     .sources = {"jmcollin78/versatile_thermostat prop_algorithm.py"}},
+                     .read = {"the whole class", "the action set_tpi_parameters"},
+                     .sources = {"jmcollin78/versatile_thermostat prop_algorithm.py, services.yaml at 0c2008cd",
+                                 "its README, Change TPI Parameters"}},
         .example = of_design_a({{"coef_int", 0.015}}),
+        .snippets = {{"YAML of an action, in Developer tools or a script",
+                      "# with hvac_mode {hvac_mode|heat}\n"
+                      "action: versatile_thermostat.set_tpi_parameters\n"
+                      "target:\n"
+                      "  entity_id: climate.room\n"
+                      "data:\n"
+                      "  tpi_coef_int: {coef_int}"}},
     };
 }
 

@@ -29,11 +29,15 @@ std::vector<std::string> lines_of(std::string_view text) {
     return lines;
 }
 
-/// The names of the placeholders of a template.
+/// The names of the placeholders of a template; "{{" is a brace.
 std::vector<std::string> names_in(std::string_view text) {
     std::vector<std::string> names;
-    for (std::size_t at = text.find('{'); at != text.npos; at = text.find('{', at + 1))
-        names.emplace_back(text.substr(at + 1, text.find_first_of("}|=", at) - at - 1));
+    for (std::size_t at = text.find('{'); at != text.npos; at = text.find('{', at + 1)) {
+        if (text.substr(at).starts_with("{{"))
+            ++at;
+        else
+            names.emplace_back(text.substr(at + 1, text.find_first_of("}|=", at) - at - 1));
+    }
     return names;
 }
 
@@ -74,7 +78,8 @@ TEST(Snippets, HoldEverySettingOfTheExampleAsItIsTyped) {
         ASSERT_EQ(snippets.size(), product.snippets.size()) << product.id;
         for (std::size_t i = 0; i < snippets.size(); ++i) {
             const std::string_view pattern = product.snippets[i].text;
-            EXPECT_EQ(snippets[i].text.find_first_of("{}"), std::string::npos) << product.id;
+            for (const std::string& name : names_in(pattern))
+                EXPECT_THAT(names_in(snippets[i].text), Not(Contains(name))) << product.id;
             EXPECT_EQ(lines_of(snippets[i].text).size(), lines_of(pattern).size()) << product.id << ": a line is lost";
             for (const Setting& setting : settings) {
                 if (pattern.find("{" + setting.name + "}") == pattern.npos) continue;
@@ -143,6 +148,7 @@ TEST(Snippets, PlaceholdersFollowTheirRules) {
     EXPECT_EQ(filled("{fKp|2} {tTn_ms|none}", settings), "1.50 none");
     EXPECT_EQ(filled("{bDInTheFeedbackPath=true:TRUE/FALSE} {bPInTheFeedbackPath=true:TRUE/FALSE}", settings),
               "TRUE FALSE");
+    EXPECT_EQ(filled("{{a: {{{fKp}}}", settings), "{a: {1.50}}") << "a doubled brace opens one";
     EXPECT_EQ(filled("a\n{tTn_ms}\nb {fKp}", settings), "a\nb 1.50") << "the line without its setting is left out";
     EXPECT_EQ(filled("{tTn_ms}", settings), "") << "a snippet without lines is left out";
     EXPECT_EQ(filled("{sample_time_s} s, {sample_time_ms} ms, {sample_time_us} us", settings),

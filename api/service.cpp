@@ -18,9 +18,9 @@
 #include "api/outline.h"
 #include "api/range_service.h"
 #include "engine/evaluation/best_so_far.h"
-#include "engine/identification/controller_law/identify_controller.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
+#include "engine/request/recorded_controller.h"
 #include "engine/tuning/device/device_model.h"
 
 namespace tunewright::api {
@@ -152,10 +152,10 @@ Expected<TuningResult> tuned(JobRequest request, const RunControl& control) {
     const bool recorded = request.record.has_value();
     std::vector<Warning> of_baseline;
     if (request.baseline_from_record) {
-        auto found = identify_controller(request.read.record, {});
-        if (!found) return Error{found.error().kind, "baseline", found.error().message};
-        request.baseline = device::continuous(found->pid);
-        of_baseline = std::move(found->warnings);
+        auto today = recorded_controller(request.read.record, request.device ? &*request.device : nullptr);
+        if (!today) return Error{today.error().kind, "baseline", today.error().message};
+        request.baseline = device::continuous(today->found.pid);
+        of_baseline = std::move(today->found.warnings);
     }
     auto result = tune(to_engine(std::move(request)), control);
     if (!result || !result->model) return result;
@@ -331,19 +331,15 @@ Answer controller_record_call(std::string_view body, const RunControl&) {
     const auto decoded = read_body(body, controller_record_request_contract());
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<ControllerRecordRequest>(decoded);
-    auto found = identify_controller(request.read.record, {.sample_time = request.sample_time});
-    if (!found) return refusal(to_problem(found.error()));
-    ControllerRecordAnswer answer{.found = std::move(*found), .typing = {}, .not_typed = {}};
-    if (request.device && request.device->product) {
-        const product::Product& product = *request.device->product;
-        auto converted = product::to_settings(product, answer.found.pid, request.device->context, true);
-        if (converted)
-            answer.typing.emplace(SettingsAnswer{&product, converted->settings, converted->settings,
-                                                 converted->realised, std::move(converted->notes),
-                                                 request.device->context});
-        else
-            answer.not_typed = converted.error().message;
-    }
+    auto today =
+        recorded_controller(request.read.record, request.device ? &*request.device : nullptr, request.sample_time);
+    if (!today) return refusal(to_problem(today.error()));
+    ControllerRecordAnswer answer{.found = std::move(today->found), .typing = {}, .not_typed = {}};
+    if (today->settings)
+        answer.typing.emplace(SettingsAnswer{
+            request.device->product, today->settings->settings, today->settings->settings, today->settings->realised,
+            std::move(today->settings->notes), request.device->context, std::move(today->settings_errors)});
+    if (!today->not_representable.empty()) answer.not_typed = std::move(today->not_representable);
     Writer out;
     controller_record_answer_contract().write(answer, out);
     return {200, out.take()};

@@ -15,10 +15,14 @@ const Description<ControllerRecordRequest>& controller_record_request_contract()
         d.field("record", &R::record, maybe(object(record_contract())),
                 "The record: u, y and, if it is known, the set point r.", {.required = true})
             .field("sample_time", &R::sample_time, maybe(number({.exclusive_minimum = 0})),
-                   "Sample time of the controller, if it is known: rows further apart show Kp less exactly without it.",
+                   "Sample time of the controller, if it is known (default: that of implement): rows further apart "
+                   "show Kp "
+                   "less exactly without it.",
                    {.unit = "time"})
             .field("implement", &R::implement, maybe(object(implement_contract())),
-                   "The user's own controller: with a product the answer has its settings too.")
+                   "The user's own controller. Its integral's rule applies, its filter if that fits as well as others; "
+                   "with "
+                   "a product the answer has its settings too.")
             .check([](const Json&, R& request, Reader& reader) {
                 const Units units = request.units.value_or(Units{});
                 if (request.implement) {
@@ -46,9 +50,16 @@ const Description<IdentifiedController>& identified_controller_contract() {
              "controller", {},
              [](const C& found, Writer& out) { controller_contract().write(Controller(found.pid), out); },
              [](SchemaBook& book) { return one_of(controller_contract()).schema(book); },
-             "In the ideal form, of a program with the backward rule.", {.required = true})
-            .field("standard_errors", &C::standard_errors, numbers_by_name("Kp, Ti, Td or Tf."),
-                   "One standard deviation of each parameter that the controller has.", {.required = true})
+             "In the ideal form, of a program with the backward rule, or that of implement. Terms that are 0 within "
+             "their errors are left out.",
+             {.required = true})
+            .field("standard_errors", &C::standard_errors, numbers_by_name("Kp, Ti, Td, Tf or b."),
+                   "One standard deviation of each parameter that the controller has, and of a known b.",
+                   {.required = true})
+            .field("certain", &C::certain, boolean(),
+                   "True if the settings are known well enough to be taken for today's without a question; otherwise "
+                   "the warning controller-uncertain says how well they are known.",
+                   {.required = true})
             .field("sample_time", &C::sample_time, only_answered(maybe(number())),
                    "Of the controller: as given, or as the record shows it; left out if it does not.", {.unit = "time"})
             .field("delay", &C::delay, only_answered(number()), "Time from y to the u that answers it in the record.",

@@ -8,7 +8,7 @@
 #include "api/contract/product/conversion.h"
 #include "api/contract/record.h"
 #include "api/describe/description.h"
-#include "engine/identification/controller_law/identify_controller.h"
+#include "engine/request/recorded_controller.h"
 
 namespace tunewright::api {
 
@@ -16,7 +16,7 @@ struct ControllerRecordRequest {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::optional<GivenRecord> record;
-    std::optional<double> sample_time;  ///< of the controller
+    std::optional<double> sample_time;  ///< of the controller; else that of implement
     std::optional<GivenDevice> implement;
     ReadRecord read;                            ///< of `record`
     std::optional<device::DeviceModel> device;  ///< of `implement`

@@ -145,7 +145,13 @@ const Description<SettingsAnswer>& settings_answer_contract() {
                 "The controller that the product then represents, with weights and filter; after rounding.")
             .field(
                 "notes", {}, [](const Answer& a, Writer& out) { write_notes(a.notes, out); }, notes_schema,
-                "Deviations from the controller, and facts that are not verified.");
+                "Deviations from the controller, and facts that are not verified.")
+            .field(
+                "standard_errors", &Answer::standard_errors,
+                unless<std::map<std::string, double>>(numbers_by_name("The parameter's name."),
+                                                      [](const auto& errors) { return errors.empty(); }),
+                "Of settings from a record: one standard deviation of each number that gain and times of the law set, "
+                "in the parameter's unit.");
         return d;
     }();
     return contract;

@@ -1,7 +1,9 @@
 // The calls that convert settings: from a controller or a schedule to the parameters of a product, and back.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "api/contract/product/product.h"
@@ -34,6 +36,7 @@ struct SettingsAnswer {
     IdealPid realised;
     std::vector<product::Note> notes;
     product::Context context;
+    std::map<std::string, double> standard_errors = {};  ///< by the name of the parameter; of settings from a record
 };
 const Description<SettingsAnswer>& settings_answer_contract();
 

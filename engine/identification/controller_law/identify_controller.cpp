@@ -6,6 +6,7 @@
 
 #include "engine/identification/controller_law/law_rows.h"
 #include "engine/identification/controller_law/law_search.h"
+#include "engine/identification/controller_law/law_terms.h"
 #include "engine/identification/controller_law/law_uncertainty.h"
 #include "engine/number_text.h"
 #include "engine/numerics/statistics.h"
@@ -18,14 +19,20 @@ struct LawLimits {
     int min_increments = 80;           ///< fewer give errors of Kp and Ti that are too small
     double min_explained = 0.5;        ///< loops whose u has other inputs too explain less, those that sample y do not
     double min_b = -0.2, max_b = 1.3;  ///< beyond 0 to 1 by more than the errors of what is answered
-    double max_Kp_error = 0.04;        ///< relative; of those above, one in ten is off by more than 5 %
-    double max_Ti_error = 0.05;        ///< the same
-    double doubtful_Kp_error = 0.02;   ///< relative; above: a warning, for 5 % are then within 2.5 deviations
-    double doubtful_Ti_error = 0.025;  ///< the same
+    /// Relative; of those above, errors are honest but too large for a figure to be of use.
+    double max_Kp_error = 0.5;
+    /// Relative, of Kp and Ti, and rows used: of simulated loops within both, 98 % are within 5 % and three standard
+    /// errors and none of 455 was off by 20 %; with fewer rows or larger errors one in ten is off by more than 5 %.
+    double max_certain_error = 0.03;
+    int min_certain_rows = 150;
+    /// Of u's moves: smaller residuals are rounding of the record's last digits, which any further term explains a bit.
+    double min_residual = 1e-4;
     /// Relative: programs differ in the order of their sums, in what a limit does to the integral and in rounding.
     double min_error = 0.007;
 };
 constexpr LawLimits kLimits;
+
+std::string percent(double share) { return text(std::ceil(100 * share)) + " %"; }
 
 Error refused(const std::string& why) { return {ErrorKind::not_identifiable, "record", why, {}}; }
 
@@ -43,7 +50,22 @@ std::optional<Error> fault_of(const Record& record, const ControllerRecordOption
     return std::nullopt;
 }
 
+LawFilter filter_of(FilterType type) {
+    switch (type) {
+        case FilterType::none: return LawFilter::none;
+        case FilterType::derivative: return LawFilter::derivative;
+        default: return LawFilter::measurement;
+    }
+}
+
 int count(const std::vector<char>& used) { return static_cast<int>(std::ranges::count(used, 1)); }
+
+double deviation_of_moves(const LawSamples& s, const std::vector<char>& used) {
+    std::vector<double> moves;
+    for (std::size_t j = 1; j < used.size(); ++j)
+        if (used[j]) moves.push_back(s.u[j] - s.u[j - 1]);
+    return deviation(moves);
+}
 
 /// What steps 1 to 3 find.
 struct LawOfRecord {
@@ -68,7 +90,7 @@ Expected<LawOfRecord> law_of_record(const Record& record, const ControllerRecord
     out.used = law_increments(s, false);
     if (count(out.used) < kLimits.min_increments) out.used = law_increments(s, true);
     if (count(out.used) < kLimits.min_increments) return too_few(count(out.used));
-    const double least = std::max(s.u_step / std::sqrt(24.0), 1e-7 * u_deviation);
+    const double least = std::max(s.u_step / std::sqrt(24.0), kLimits.min_residual * deviation_of_moves(s, out.used));
     for (int pass = 0; pass < 3; ++pass) {
         out.laws = search_law(s, out.used, least, out.laws);
         if (out.laws.empty())
@@ -82,14 +104,21 @@ Expected<LawOfRecord> law_of_record(const Record& record, const ControllerRecord
         }
         if (pass < 2) out.odd += leave_odd_out(s, out.used, law, least);
     }
+    leave_zero_terms_out(s, out.used, out.laws);
+    if (options.filter) prefer_filter(filter_of(*options.filter), out.laws);
     return out;
 }
 
-/// Kp of the backward rule is Kp' - Ki h (centre +- width), h the sample spacing.
+/// Kp of the backward rule is Kp' - Ki h (centre +- width), h the sample spacing; that of the forward rule lies as far
+/// on the other side of Kp'.
 struct RowTiming {
     bool own = false;  ///< the rows are the controller's samples
     double centre = 0.5, width = 0;
 };
+
+double side_of(IntegralRule rule) {
+    return rule == IntegralRule::backward ? 1 : rule == IntegralRule::trapezoidal ? 0 : -1;
+}
 
 /// Noise of y between the rows, which a controller that is quicker than they are integrates too, leaves a residual of
 /// u; where there is noise and no such residual, the rows are the controller's own.
@@ -136,7 +165,7 @@ struct Shift {
 class ControllerEstimate {
 public:
     ControllerEstimate(const LawOfRecord& found, const ControllerRecordOptions& options)
-        : found_(found), s_(found.samples), law_(found.laws.front()) {
+        : found_(found), s_(found.samples), law_(found.laws.front()), side_(side_of(options.integral)) {
         const LawResiduals r = law_residuals(s_, found.used, law_);
         moments_ = law_moments(r.white);
         const double whitening = 2 / (1 + law_.theta);  // of the variance of what is white in u itself
@@ -176,11 +205,18 @@ public:
             out.pid.Td = fit_.value[kLawD] / now_.Kp;
             out.standard_errors["Td"] = std::sqrt(covariance_[kLawD][kLawD]) / std::abs(now_.Kp);
         }
-        if (law_.has(kLawSetPoint)) {
-            out.pid.b = fit_.value[kLawSetPoint] / now_.Kp;
-            out.b_known = true;
+        out.b_known = set_point_moves(s_, found_.used);
+        if (out.b_known) {
+            // The set point of the same row is integrated: of the sample before by the other rules.
+            const double later = (1 - side_) * timing_.centre * s_.period;
+            const double b = (fit_.value[kLawSetPoint] + later * now_.Ki) / now_.Kp;
+            const double error = out.standard_errors["b"] = ratio_error(kLawSetPoint, kLawP, b);
+            out.pid.b = usual_weight(b, error);
         }
-        if (law_.has(kLawSetPointD)) out.pid.c = fit_.value[kLawSetPointD] / fit_.value[kLawD];
+        if (law_.has(kLawSetPointD)) {
+            const double c = fit_.value[kLawSetPointD] / fit_.value[kLawD];
+            out.pid.c = usual_weight(c, ratio_error(kLawSetPointD, kLawD, c));
+        }
         if (law_.shape.filter != LawFilter::none) {
             const FilterType type = law_.shape.filter == LawFilter::derivative ? FilterType::derivative
                                                                                : FilterType::measurement_first_order;
@@ -201,11 +237,25 @@ public:
     }
 
 private:
+    /// Standard deviation of a weight, the quotient of two coefficients.
+    double ratio_error(LawColumn weighted, LawColumn gain, double weight) const {
+        const auto& c = covariance_;
+        const double square = c[weighted][weighted] - 2 * weight * c[weighted][gain] + weight * weight * c[gain][gain];
+        return std::sqrt(std::max(0.0, square) / std::pow(fit_.value[gain], 2) + kLimits.min_error * kLimits.min_error);
+    }
+
+    /// 0 or 1, the usual weights, if the record does not show another.
+    static double usual_weight(double weight, double error) {
+        for (const double usual : {0.0, 1.0})
+            if (!(std::abs(weight - usual) > kZeroDeviations * error)) return usual;
+        return weight;
+    }
+
     void find_errors() {
-        const double rule_time = timing_.centre * s_.period;
+        const double rule_time = side_ * timing_.centre * s_.period;
         now_ = settings_of(fit_, rule_time);
         const double P = covariance_[kLawP][kLawP], I = covariance_[kLawI][kLawI], PI = covariance_[kLawP][kLawI];
-        const double rule = timing_.width * std::abs(now_.Ki) * s_.period;
+        const double rule = side_ * timing_.width * std::abs(now_.Ki) * s_.period;
         const double Kp_square = P + rule_time * rule_time * I - 2 * rule_time * PI + rule * rule;
         Shift shift{.now = now_, .rule_time = rule_time};
         count_alternatives(shift);
@@ -222,8 +272,6 @@ private:
     void count_alternatives(Shift& shift) const {
         constexpr double kRounding = 0.25, kReverse = 0.1, kTheta = 0.3, kSameOnY = 0.3, kRoundedY = 0.3;
         constexpr double kSameOnYRange = 0.3;  // of the criterion, a row
-        // Of the criterion, over which a law is as good; residuals that are not white make large records too sure.
-        const double as_good = std::max(8.0, 0.05 * law_.samples);
         for (const FoundLaw& other : found_.laws) {
             if (other.has(kLawI) != has_integral()) continue;
             // A filter of the measurement and a derivative that cancel: the same law with one more free constant.
@@ -233,7 +281,7 @@ private:
             const bool same_on_y = law_.has(kLawD) && other.has(kLawD) && worse < kSameOnYRange * law_.samples;
             // Errors of rounded y are not white where y moves slowly; a filter or a derivative then explains them.
             const double least = y_may_be_rounded_ ? kRoundedY : same_on_y ? kSameOnY : 0;
-            shift.count_in(other.fit, std::max(least, std::exp(-worse / as_good)));
+            shift.count_in(other.fit, std::max(least, std::exp(-worse / as_good(law_))));
         }
         shift.count_in(other_fit_, y_may_be_rounded_ ? 1 : kRounding);
         shift.count_in(without_errors_of_y(s_, moments_, law_, y_variance_), kReverse * law_.theta);
@@ -248,6 +296,7 @@ private:
     const LawOfRecord& found_;
     const LawSamples& s_;
     const FoundLaw& law_;
+    double side_;
     LawMoments moments_ = {};
     RowTiming timing_;
     LawFit fit_, other_fit_;
@@ -274,17 +323,18 @@ Expected<IdentifiedController> identify_controller(const Record& record, const C
         return refused("u moves with the set point " + text(b) +
                        " times as far as with y; a PID law has a set-point weight from 0 to 1. Check that the set "
                        "point is this loop's own.");
-    if (!(estimate.Kp_error() < kLimits.max_Kp_error) || !(estimate.Ti_error() < kLimits.max_Ti_error))
-        return refused("The record leaves the settings open: Kp is known to " +
-                       text(std::ceil(100 * estimate.Kp_error())) + " %" +
-                       (estimate.has_integral() ? ", Ti to " + text(std::ceil(100 * estimate.Ti_error())) + " %" : "") +
+    if (!(estimate.Kp_error() < kLimits.max_Kp_error))
+        return refused("The record leaves the settings open: Kp is known to " + percent(estimate.Kp_error()) +
                        ". Record moves of the set point in automatic, with the controller's own sample time.");
     IdentifiedController out = estimate.answer(options);
-    if (estimate.Kp_error() > kLimits.doubtful_Kp_error || estimate.Ti_error() > kLimits.doubtful_Ti_error)
+    out.certain = estimate.Kp_error() <= kLimits.max_certain_error &&
+                  estimate.Ti_error() <= kLimits.max_certain_error && out.rows >= kLimits.min_certain_rows;
+    if (!out.certain)
         out.warnings.push_back({"controller-uncertain",
-                                "The record gives Kp to " + text(std::ceil(100 * estimate.Kp_error())) +
-                                    " % and Ti to " + text(std::ceil(100 * estimate.Ti_error())) +
-                                    " %, one standard deviation. Compare with the settings in the controller.",
+                                std::to_string(out.rows) + " rows of the record give Kp to " +
+                                    percent(estimate.Kp_error()) +
+                                    (estimate.has_integral() ? " and Ti to " + percent(estimate.Ti_error()) : "") +
+                                    ", one standard deviation. Compare with the settings in the controller.",
                                 WarningLevel::warning});
     return out;
 }

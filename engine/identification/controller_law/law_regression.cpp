@@ -110,6 +110,14 @@ std::vector<char> law_increments(const LawSamples& s, bool with_still) {
     return used;
 }
 
+bool set_point_moves(const LawSamples& s, const std::vector<char>& used) {
+    if (s.r.empty()) return false;
+    const std::vector<double> r = law_columns(s, {})[kLawSetPoint];
+    for (std::size_t j = 0; j < used.size(); ++j)
+        if (used[j] && r[j] != 0) return true;
+    return false;
+}
+
 LawColumns whitened(const LawColumns& columns, const std::vector<char>& used, double theta, bool drift) {
     LawColumns out;
     std::array<bool, kLawColumns> empty = {};
@@ -169,7 +177,8 @@ LawMoments law_moments(const LawColumns& white) {
 }
 
 LawFit fit_law(const LawMoments& m, const std::vector<int>& chosen) {
-    constexpr double kMinPivot = 1e-11;  // of 1: columns that are others' sums to rounding have no coefficients
+    constexpr double kMinPivot = 1e-11;   // of 1: columns that are others' sums to rounding have no coefficients
+    constexpr double kPrecision = 1e-15;  // of the moments, over the least pivot: what is left is no smaller
     LawFit out;
     const std::size_t n = chosen.size();
     const auto at = [&](std::size_t i) { return static_cast<std::size_t>(chosen[i]); };
@@ -181,12 +190,14 @@ LawFit fit_law(const LawMoments& m, const std::vector<int>& chosen) {
     }
     // Cholesky's factor L of the scaled moments, and its inverse.
     std::array<std::array<double, kLawColumns>, kLawColumns> L = {}, inverse = {};
+    double least_pivot = 1;
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k <= i; ++k) {
             double sum = m[at(i)][at(k)] * scale[i] * scale[k];
             for (std::size_t c = 0; c < k; ++c) sum -= L[i][c] * L[k][c];
             if (i == k && !(sum > kMinPivot)) return out;
             L[i][k] = i == k ? std::sqrt(sum) : sum / L[k][k];
+            if (i == k) least_pivot = std::min(least_pivot, sum);
         }
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k <= i; ++k) {
@@ -203,7 +214,8 @@ LawFit fit_law(const LawMoments& m, const std::vector<int>& chosen) {
             out.value[at(i)] += out.inverse[at(i)][at(k)] * m[at(k)][kLawTarget];
         }
     for (std::size_t i = 0; i < n; ++i) explained += out.value[at(i)] * m[at(i)][kLawTarget];
-    out.residual = std::max(0.0, m[kLawTarget][kLawTarget] - explained);
+    const double total = m[kLawTarget][kLawTarget];
+    out.residual = std::max(kPrecision / least_pivot * total, total - explained);
     out.solved = true;
     return out;
 }

@@ -40,6 +40,9 @@ LawColumns law_columns(const LawSamples& samples, const LawShape& shape);
 /// Whether the increment that ends at each sample is the law's own.
 std::vector<char> law_increments(const LawSamples& samples, bool with_still);
 
+/// Whether the set point moves in one of these increments: without that its weights leave no trace.
+bool set_point_moves(const LawSamples& samples, const std::vector<char>& used);
+
 /// The columns made white by 1/(1 - theta q^-1), stretch by stretch, rows of other increments left out.
 ///
 /// `drift`: a set point that is not recorded; its integral, a straight line over each stretch of at most

@@ -34,11 +34,8 @@ double free_starts(const std::vector<char>& used, double theta) {
 class Search {
 public:
     Search(const LawSamples& s, const std::vector<char>& used, double least_error)
-        : s_(s), used_(used), least_(least_error) {
+        : s_(s), used_(used), least_(least_error), r_moves_(set_point_moves(s, used)) {
         for (std::size_t i = 0; i < kThetas.size(); ++i) starts_[i] = free_starts(used, kThetas[i]);
-        const LawColumns c = law_columns(s, {});
-        for (std::size_t j = 0; j < used.size(); ++j)
-            if (used[j] && c[kLawSetPoint][j] != 0) r_moves_ = true;
     }
 
     void try_shape(const LawShape& shape) {
@@ -111,7 +108,7 @@ private:
     const LawSamples& s_;
     const std::vector<char>& used_;
     double least_;
-    bool r_moves_ = false;
+    bool r_moves_;
     double least_criterion_ = 1e300;
     std::optional<std::size_t> best_theta_, next_theta_;  ///< the neighbours of the first are tried
     std::array<double, kThetas.size()> starts_ = {};

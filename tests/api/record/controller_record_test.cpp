@@ -13,11 +13,12 @@ namespace tunewright::api {
 namespace {
 
 /// A PI program (Kp 1.5, Ti 18 s, every second) on 2 e^(-3s)/(20s+1), with steps of the set point and a wave of load.
-Json closed_loop(int rows = 400, double load_size = 2) {
+Json closed_loop(int rows = 400, double load_size = 2, double step = 4) {
     Json record{{"dt", 1}, {"u", Json::array()}, {"y", Json::array()}, {"r", Json::array()}};
     double x = 50, integral = 0, delayed[3] = {25, 25, 25};
     for (int k = 0; k < rows; ++k) {
-        const double r = k / 90 % 2 == 0 ? 50 : 54, noise = 0.05 * std::sin(k * k * 0.7), y = x + noise, e = r - y;
+        const double r = k / 90 % 2 == 0 ? 50 : 50 + step, noise = 0.05 * std::sin(k * k * 0.7), y = x + noise,
+                     e = r - y;
         integral += 1.5 / 18 * e;
         const double u = 25 + 1.5 * e + integral, load = load_size * std::sin(k * 0.05);
         record["u"].push_back(u);
@@ -54,6 +55,50 @@ TEST(ControllerRecord, AnswersThemInTheProductsForm) {
     // The library counts u from 0 to 255; its Ki is Kp/Ti per second.
     EXPECT_NEAR(body["typing"]["settings"]["Kp"].get<double>(), 1.5, 1e-5) << body["typing"].dump();
     EXPECT_NEAR(body["typing"]["settings"]["Ki"].get<double>(), 1.5 / 18, 1e-5);
+    // Kd is 0 and the weights are no numbers: no errors of them.
+    const Json& errors = body["typing"]["standard_errors"];
+    ASSERT_EQ(errors.size(), 2u) << errors.dump();
+    EXPECT_NEAR(errors["Kp"].get<double>(), body["identified"]["standard_errors"]["Kp"].get<double>(), 1e-9);
+    EXPECT_GT(errors["Ki"].get<double>(), 0);
+    EXPECT_TRUE(body["identified"]["certain"].get<bool>());
+}
+
+TEST(ControllerRecord, TakesTheSampleTimeOfTheProductThatRowsDoNotShow) {
+    Json record = closed_loop(2000);
+    for (const char* name : {"u", "y", "r"}) {
+        Json every_fourth = Json::array();
+        for (std::size_t k = 0; k < record[name].size(); k += 4) every_fourth.push_back(record[name][k]);
+        record[name] = every_fourth;
+    }
+    record["dt"] = 4;
+    const auto found = [&](const Json& more) {
+        Json request{{"record", record}};
+        request.update(more);
+        return answered(request)["identified"];
+    };
+    const Json device{{"product", "arduino_pid_v1"}, {"u_span", {0, 255}}, {"sample_time", 1}};
+    const Json from_device = found({{"implement", device}}), given = found({{"sample_time", 1}});
+    EXPECT_EQ(from_device["sample_time"], 1);
+    EXPECT_EQ(from_device["controller"]["Kp"], given["controller"]["Kp"]);
+    EXPECT_NEAR(from_device["controller"]["Kp"].get<double>(), 1.5, 0.05);
+    EXPECT_EQ(found({{"implement", device}, {"sample_time", 2}})["sample_time"], 2) << "the loop's own comes first";
+}
+
+TEST(ControllerRecord, WhatTheRecordDoesNotShowIsAsTheProductHasIt) {
+    const auto typing = [](const char* product, double step) {
+        const Json device{{"product", product}, {"y_span", {0, 100}}, {"u_span", {0, 100}}, {"sample_time", 1}};
+        const Json body = answered({{"record", closed_loop(400, 2, step)}, {"implement", device}});
+        EXPECT_EQ(body["identified"]["b_known"], step != 0);
+        return body["typing"];
+    };
+    // The block's own weight is 0.35. Only moves of the set point contradict it.
+    EXPECT_EQ(typing("omron_pid190", 0)["settings"]["alpha_code"], "165");
+    EXPECT_EQ(typing("omron_pid190", 4)["settings"]["alpha_code"], "100");
+    // A weight of 1 within its error needs no structure of two degrees of freedom.
+    const Json deltav = typing("emerson_deltav_standard", 4);
+    EXPECT_NEAR(deltav["settings"]["GAIN"].get<double>(), 1.5, 1e-3);
+    EXPECT_FALSE(deltav["settings"].contains("BETA")) << deltav.dump();
+    EXPECT_EQ(deltav["standard_errors"].size(), 2u) << deltav["standard_errors"].dump();
 }
 
 TEST(ControllerRecord, RefusesARecordThatHoldsNoLaw) {

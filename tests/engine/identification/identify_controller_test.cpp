@@ -87,6 +87,61 @@ TEST(IdentifyController, ManualPhasesAreLeftOutWithAndWithoutAModeColumn) {
     }
 }
 
+TEST(IdentifyController, TermsThatAreZeroWithinTheirErrorsAreLeftOut) {
+    SimulatedController loop = plain_loop();
+    // Rounding to the last digits leaves residuals that a derivative explains a little.
+    loop.u_record_rounding = loop.y_record_rounding = 1e-6;
+    for (int seed = 1; seed <= 20; ++seed) {
+        const IdentifiedController found = known(loop, seed);
+        EXPECT_EQ(found.pid.Td, 0) << seed;
+        EXPECT_EQ(found.standard_errors.count("Td"), 0u) << seed;
+        EXPECT_EQ(found.pid.filter.type, FilterType::none) << seed;
+        EXPECT_NEAR(found.pid.Kp, 1.5, 1e-4) << seed;
+    }
+    loop.b = 0;
+    const IdentifiedController without_kick = known(loop);
+    EXPECT_EQ(without_kick.pid.b, 0) << "a weight of 1e-7";
+    EXPECT_TRUE(without_kick.b_known);
+}
+
+TEST(IdentifyController, TheIntegralsRuleIsThatOfTheOptions) {
+    SimulatedController loop = plain_loop();
+    loop.b = 0.6;
+    const double half = 1.5 / 18 / 2;  // Ki Ts/2
+    const IdentifiedController backward = known(loop),
+                               trapezoidal = known(loop, 1, {.integral = IntegralRule::trapezoidal});
+    EXPECT_NEAR(backward.pid.Kp, 1.5, 1e-6);
+    EXPECT_NEAR(backward.pid.b, 0.6, 1e-6);
+    // Ki Ts e_k = Ki Ts (e_k + e_k-1)/2 + Ki Ts/2 (e_k - e_k-1)
+    EXPECT_NEAR(trapezoidal.pid.Kp, 1.5 + half, 1e-6);
+    EXPECT_NEAR(trapezoidal.pid.b * trapezoidal.pid.Kp, 0.6 * 1.5 + half, 1e-6);
+    loop.forward = true;
+    const IdentifiedController forward = known(loop, 1, {.integral = IntegralRule::forward});
+    EXPECT_NEAR(forward.pid.Kp, 1.5, 1e-6);
+    EXPECT_NEAR(forward.pid.Ti, 18, 1e-5);
+    EXPECT_NEAR(forward.pid.b, 0.6, 1e-6);
+}
+
+TEST(IdentifyController, TheControllersOwnFilterIsTakenAmongLawsThatFitEqually) {
+    SimulatedController loop = plain_loop();
+    loop.structure = ProgramStructure::pid;
+    loop.filter = records::ProgramFilter::measurement;
+    loop.Td = 2.5, loop.Tf = 0.5;
+    loop.with_set_point = false;
+    loop.set_point_steps = 0;
+    // (Kp + Ki/s + Kd s)/(1 + Tf s) in partial fractions, by hand.
+    const double Ki = 1.5 / 18, Kp = 1.5 - Ki * 0.5, Kd = 1.5 * 2.5 - 1.5 * 0.5 + Ki * 0.25;
+    const IdentifiedController own = known(loop, 1, {.filter = FilterType::measurement_first_order}),
+                               other = known(loop, 1, {.filter = FilterType::derivative});
+    EXPECT_EQ(own.pid.filter.type, FilterType::measurement_first_order);
+    EXPECT_NEAR(own.pid.Kp, 1.5, 0.01);
+    EXPECT_NEAR(own.pid.Td, 2.5, 0.03);
+    EXPECT_EQ(other.pid.filter.type, FilterType::derivative);
+    EXPECT_NEAR(other.pid.Kp, Kp, 0.01);
+    EXPECT_NEAR(other.pid.Td, Kd / Kp, 0.03);
+    EXPECT_NEAR(other.pid.filter.Tf, 0.5, 0.02);
+}
+
 TEST(IdentifyController, UnitsOfTheRecordScaleTheSettings) {
     auto made = recorded(plain_loop(), 1);
     for (double& t : made.record.t) t = 60 * t + 1000;
@@ -144,6 +199,13 @@ TEST(IdentifyController, HoldsTheTruthOnSimulatedLoopsOfEveryKind) {
                                     error <= 3 * found_error->second / std::abs(value) + 1e-4);
         };
         ++answered;
+        const auto shows = [&](const char* name, double value) {
+            const auto error = found->standard_errors.find(name);
+            return value == 0 || error == found->standard_errors.end() || std::abs(value) > error->second;
+        };
+        EXPECT_TRUE(shows("Td", found->pid.Td) && shows("Tf", found->pid.filter.Tf) && shows("b", found->pid.b))
+            << seed;
+        EXPECT_EQ(found->certain, found->warnings.empty());
         held += within("Kp", Kp_error, found->pid.Kp) && within("Ti", Ti_error, found->pid.Ti);
         wrong_in_silence += std::max(Kp_error, Ti_error) > 0.2 && found->warnings.empty();
     }

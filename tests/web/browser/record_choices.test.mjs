@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { accessibilityViolations, browserTests, dropFile } from "../harness.mjs";
 import { slider } from "../design_page.mjs";
-import { germanTrend, loopUnderPI } from "../made_records.mjs";
+import { heaterLog, loopUnderPI } from "../made_records.mjs";
 import { candidatesShown, identified } from "../step_record.mjs";
 
 const tests = browserTests();
@@ -254,10 +254,10 @@ test("the settings that moved u in the record are today's, in the form and in a 
   });
 });
 
-test("a record that leaves the settings open takes the choice back and says why; it is tuned without them", async () => {
+test("a record without a law takes the choice back and says why; it is tuned without the settings", async () => {
   await withPage("", {}, async (page) => {
-    await dropped(page, germanTrend());
-    await today(page).getByText(/^There are no settings from the record\. The record leaves the settings open/).waitFor();
+    await dropped(page, heaterLog());
+    await today(page).getByText(/^There are no settings from the record\. The record has 0 rows in which the controller moves u/).waitFor();
     assert.equal(await today(page).getByLabel("Form").inputValue(), "ideal");
     await page.getByRole("button", { name: "Tune at once" }).click();
     await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();

@@ -751,6 +751,9 @@ export type components = {
         detail: string;
         deviation: boolean;
       }[];
+      standard_errors?: {
+        [key: string]: number | null;
+      };
     };
     Implemented: {
       sample_time: number | null;
@@ -1218,6 +1221,7 @@ export type components = {
       standard_errors: {
         [key: string]: number | null;
       };
+      certain: boolean;
       sample_time?: number;
       delay: number;
       b_known: boolean;

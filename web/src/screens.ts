@@ -11,8 +11,6 @@ import { addressOfJob, formatRoute, parseRoute, rewriteAddress, showsJob, showsS
 import type { JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 import type { CandidateChoice } from "./views/cards/candidates_card.ts";
-import { designView } from "./views/design.ts";
-import { identifyView, noRecordView } from "./views/identify.ts";
 import type { RelayView } from "./views/relay.ts";
 import { startView } from "./views/start.ts";
 import type { StartView, View } from "./views/start.ts";
@@ -28,6 +26,15 @@ function awayView(title: string): View {
   const heading = h("h1", { tabindex: -1 }, title);
   const trouble = h("p", { class: "trouble", role: "status" }, sentenceOf(notConnected()));
   return { element: h("main", { id: "main" }, heading, trouble), heading, dispose: () => undefined };
+}
+
+// Most visits go on to these two: they are loaded with the first touch of the page, before their screen is opened.
+const loadDesign = (): Promise<typeof import("./views/design.ts")> => import("./views/design.ts");
+const loadIdentify = (): Promise<typeof import("./views/identify.ts")> => import("./views/identify.ts");
+
+function loadAhead(): void {
+  const load = (): void => void Promise.all([loadDesign(), loadIdentify()]).catch(() => undefined);
+  for (const touch of ["pointerdown", "keydown", "dragenter"]) document.addEventListener(touch, load, { once: true });
 }
 
 /** `listed`: resolves when methods and examples are known. */
@@ -141,10 +148,15 @@ export function screens(
     return [];
   }
 
-  function identifyScreen(test: IdentifyRequest, region = false): View {
+  /** Identify with this record, or the reason why there is none. */
+  async function showIdentify(test: IdentifyRequest | null, focus: boolean, region = false, trouble = ""): Promise<void> {
+    const part = await later(loadIdentify(), store.get().route, "Identify", focus);
+    if (!part) return;
+    const { identifyView, noRecordView } = part;
+    if (!test) return mount(noRecordView(trouble), "Identify · Tunewright", focus);
     const address = location.hash;
     const first = remembered?.address === address ? remembered.choice : { structure: "", region };
-    return identifyView(test, { methods: startScreen().methods(), first }, announce, {
+    const shown = identifyView(test, { methods: startScreen().methods(), first }, announce, {
       onRemember(choice) {
         remembered = { address, choice };
       },
@@ -154,6 +166,7 @@ export function screens(
       },
       onTune: tuneSubject,
     });
+    mount(shown, "Identify · Tunewright", focus);
   }
 
   /** A job's record, with the methods and settings of its request. */
@@ -163,7 +176,7 @@ export function screens(
       const job = known?.id === id && known.request ? known : await getJob(id);
       const { name, units, record, identify } = job.request ?? {};
       if (store.get().route !== route) return;
-      if (!record || !job.request) return mount(noRecordView(), "Identify · Tunewright", focus);
+      if (!record || !job.request) return void showIdentify(null, focus);
       fillForm(job.request);
       const test: IdentifyRequest = {
         ...(name ? { name } : {}),
@@ -172,9 +185,9 @@ export function screens(
         ...(identify ? { identify } : {}),
       };
       store.set((workspace) => ({ ...workspace, test }));
-      mount(identifyScreen(test, job.request["uncertainty"] === "identified"), "Identify · Tunewright", focus);
+      await showIdentify(test, focus, job.request["uncertainty"] === "identified");
     } catch (error) {
-      if (store.get().route === route) mount(noRecordView(sentenceOf(error)), "Identify · Tunewright", focus);
+      if (store.get().route === route) void showIdentify(null, focus, false, sentenceOf(error));
     }
   }
 
@@ -267,6 +280,12 @@ export function screens(
     if (part) mount(part.compareView(store, announce, events), "Compare · Tunewright", focus);
   }
 
+  async function openDesign(route: Route, focus: boolean): Promise<void> {
+    const part = await later(loadDesign(), route, "Design", focus);
+    const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
+    if (part) mount(part.designView(store, announce, events), "Design · Tunewright", focus);
+  }
+
   function openJobScreen(route: JobRoute, focus: boolean): void {
     const before = store.get();
     const same = before.job?.id === route.job;
@@ -283,10 +302,8 @@ export function screens(
     // A link to the table alone shows the earlier choices; its address then contains them.
     const { drawn: rows, rankMs } = store.get();
     if (route.screen === "compare") rewriteAddress(route, { ...route, rows, rankMs });
-    if (route.screen === "design") {
-      const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
-      mount(designView(store, announce, events), "Design · Tunewright", focus);
-    } else void openCompare(route, focus);
+    if (route.screen === "design") void openDesign(route, focus);
+    else void openCompare(route, focus);
     flow.follow(route.job);
   }
 
@@ -301,8 +318,7 @@ export function screens(
       const test = before.test;
       // After a reload, name, units and record come from the form's.
       if (first && test) fillForm({ ...test });
-      mount(test ? identifyScreen(test) : noRecordView(), "Identify · Tunewright", !first);
-      return;
+      return void showIdentify(test, !first);
     }
     if (route.screen === "range") return void openRange(route, !first);
     if (route.screen === "relay") return void openRelay(route, !first);
@@ -313,6 +329,7 @@ export function screens(
     void refreshRecent();
   }
 
+  loadAhead();
   // The address follows the choices, and the title follows the loop's name.
   store.subscribe((workspace, previous) => {
     const route = workspace.route;

@@ -284,7 +284,7 @@ if (process.argv[1] && import.meta.url === pathToFileURL(process.argv[1]).href) 
   } else if (process.argv[2] === "browser") {
     const folder = path.join(here, "browser");
     runTests(
-      readdirSync(folder)
+      readdirSync(folder, { recursive: true })
         .filter((name) => name.endsWith(".test.mjs"))
         .map((name) => path.join(folder, name)),
     );

@@ -7,12 +7,10 @@ import { h } from "./dom.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
 import type { JobFlow } from "./job_flow.ts";
 import type { RangeView } from "./range/view.ts";
-import { addressOfJob, formatRoute, parseRoute, rewriteAddress, showsJob, showsStart } from "./routes.ts";
+import { addressOfJob, entryState, formatRoute, keepInEntry, parseRoute, rewriteAddress, showsJob, showsStart } from "./routes.ts";
 import type { JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 import type { CandidateChoice } from "./views/cards/candidates_card.ts";
-import { designView } from "./views/design.ts";
-import { identifyView, noRecordView } from "./views/identify.ts";
 import type { RelayView } from "./views/relay.ts";
 import { startView } from "./views/start.ts";
 import type { StartView, View } from "./views/start.ts";
@@ -28,6 +26,15 @@ function awayView(title: string): View {
   const heading = h("h1", { tabindex: -1 }, title);
   const trouble = h("p", { class: "trouble", role: "status" }, sentenceOf(notConnected()));
   return { element: h("main", { id: "main" }, heading, trouble), heading, dispose: () => undefined };
+}
+
+// Most visits go on to these two: they are loaded with the first touch of the page, before their screen is opened.
+const loadDesign = (): Promise<typeof import("./views/design.ts")> => import("./views/design.ts");
+const loadIdentify = (): Promise<typeof import("./views/identify.ts")> => import("./views/identify.ts");
+
+function loadAhead(): void {
+  const load = (): void => void Promise.all([loadDesign(), loadIdentify()]).catch(() => undefined);
+  for (const touch of ["pointerdown", "keydown", "dragenter"]) document.addEventListener(touch, load, { once: true });
 }
 
 /** `listed`: resolves when methods and examples are known. */
@@ -53,6 +60,7 @@ export function screens(
   function mount(next: View, title: string, focus: boolean): void {
     if (view !== next) {
       if (view && view !== start && view !== relay && view !== range) view.dispose();
+      if (next === start) start.takeBack();
       view = next;
       stage.replaceChildren(next.element);
       window.scrollTo(0, 0);
@@ -78,9 +86,35 @@ export function screens(
         relayOf = { units: startScreen().units(), loop: startScreen().loops() };
         location.hash = formatRoute({ screen: "relay", plant: form, values });
       },
-      onModel: (form, values) => typed(showsStart, { screen: "new", plant: form, values }),
+      onChange: startChanged,
     });
     return start;
+  }
+
+  /** The content of the form stays with this entry of the history. */
+  function keepStart(): void {
+    const { route } = store.get();
+    if (start && (showsStart(route) || route.screen === "identify")) keepInEntry(route, { start: start.texts() });
+  }
+
+  /** And in the address, as far as that can hold it. */
+  function startChanged(): void {
+    const address = showsStart(store.get().route) ? start?.address() : null;
+    if (address) typed(showsStart, { screen: "new", ...address });
+    keepStart();
+  }
+
+  /** After Back, or a reload: the form as this entry of the history left it. False if it left none. */
+  function restoreStart(): boolean {
+    const { start: texts } = entryState();
+    if (!texts) return false;
+    const shown = startScreen();
+    if (JSON.stringify(texts) !== JSON.stringify(shown.texts())) {
+      shown.restore(texts);
+      const { test } = store.get();
+      if (texts.kind === "record" && test) shown.loadRecord(test.record, test.identify);
+    }
+    return true;
   }
 
   /** A screen in a file of its own, which most visits do not need; null if another is shown by now, or if it cannot
@@ -133,7 +167,9 @@ export function screens(
 
   /** The result of Identify is tuned with the methods and settings of Start. */
   async function tuneSubject(subject: TuneSubject, all: boolean): Promise<FieldError[]> {
+    await startScreen().settled();
     const { request, faults } = startScreen().compose(subject, all);
+    startScreen().mark(faults);
     if (faults.length > 0) return faults;
     const job = await postJob(request);
     startScreen().endLoop();
@@ -141,10 +177,16 @@ export function screens(
     return [];
   }
 
-  function identifyScreen(test: IdentifyRequest, region = false): View {
+  /** Identify with this record, or the reason why there is none. */
+  async function showIdentify(test: IdentifyRequest | null, focus: boolean, region = false, trouble = ""): Promise<void> {
+    const part = await later(loadIdentify(), store.get().route, "Identify", focus);
+    if (!part) return;
+    const { identifyView, noRecordView } = part;
+    if (!test) return mount(noRecordView(trouble), "Identify · Tunewright", focus);
     const address = location.hash;
     const first = remembered?.address === address ? remembered.choice : { structure: "", region };
-    return identifyView(test, { methods: startScreen().methods(), first }, announce, {
+    const shown = identifyView(test, { ofLoop: startScreen().ofLoop, methods: startScreen().methods(), first }, announce, {
+      onLoop: startScreen().offerRecord,
       onRemember(choice) {
         remembered = { address, choice };
       },
@@ -154,6 +196,8 @@ export function screens(
       },
       onTune: tuneSubject,
     });
+    mount(shown, "Identify · Tunewright", focus);
+    keepStart();
   }
 
   /** A job's record, with the methods and settings of its request. */
@@ -163,7 +207,7 @@ export function screens(
       const job = known?.id === id && known.request ? known : await getJob(id);
       const { name, units, record, identify } = job.request ?? {};
       if (store.get().route !== route) return;
-      if (!record || !job.request) return mount(noRecordView(), "Identify · Tunewright", focus);
+      if (!record || !job.request) return void showIdentify(null, focus);
       fillForm(job.request);
       const test: IdentifyRequest = {
         ...(name ? { name } : {}),
@@ -172,9 +216,9 @@ export function screens(
         ...(identify ? { identify } : {}),
       };
       store.set((workspace) => ({ ...workspace, test }));
-      mount(identifyScreen(test, job.request["uncertainty"] === "identified"), "Identify · Tunewright", focus);
+      await showIdentify(test, focus, job.request["uncertainty"] === "identified");
     } catch (error) {
-      if (store.get().route === route) mount(noRecordView(sentenceOf(error)), "Identify · Tunewright", focus);
+      if (store.get().route === route) void showIdentify(null, focus, false, sentenceOf(error));
     }
   }
 
@@ -193,22 +237,26 @@ export function screens(
   }
 
   /** Identifies the content of the form; a reload of the page starts again. */
-  const fillMark = (): string => `${performance.timeOrigin}/${fills}`;
+  const fillMark = (): string => `${performance.timeOrigin}/${fills}/${startScreen().loops()}`;
 
   /** An entry of the history remembers how it filled the form: Back finds the text typed since then. */
   function fillForEntry(request: TuningRequest, example: boolean): void {
     fillForm(request, example);
-    history.replaceState({ fill: fillMark() }, "");
+    restoreStart();
+    keepInEntry(store.get().route, { fill: fillMark() });
+    keepStart();
   }
 
-  const isAsLeft = (): boolean => (history.state as { fill?: string } | null)?.fill === fillMark();
+  const isAsLeft = (): boolean => entryState().fill === fillMark();
 
   async function loadForm(route: Route): Promise<void> {
+    if (isAsLeft()) return void restoreStart();
+    if ((route.screen === "new" || route.screen === "start") && restoreStart()) return;
     if (route.screen === "new") {
       fills += 1;
       startScreen().loadTyped(route.plant, route.values);
+      keepStart();
     }
-    if (isAsLeft()) return;
     try {
       if (route.screen === "edit") {
         const known = store.get().job;
@@ -267,6 +315,12 @@ export function screens(
     if (part) mount(part.compareView(store, announce, events), "Compare · Tunewright", focus);
   }
 
+  async function openDesign(route: Route, focus: boolean): Promise<void> {
+    const part = await later(loadDesign(), route, "Design", focus);
+    const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
+    if (part) mount(part.designView(store, announce, events), "Design · Tunewright", focus);
+  }
+
   function openJobScreen(route: JobRoute, focus: boolean): void {
     const before = store.get();
     const same = before.job?.id === route.job;
@@ -283,10 +337,8 @@ export function screens(
     // A link to the table alone shows the earlier choices; its address then contains them.
     const { drawn: rows, rankMs } = store.get();
     if (route.screen === "compare") rewriteAddress(route, { ...route, rows, rankMs });
-    if (route.screen === "design") {
-      const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
-      mount(designView(store, announce, events), "Design · Tunewright", focus);
-    } else void openCompare(route, focus);
+    if (route.screen === "design") void openDesign(route, focus);
+    else void openCompare(route, focus);
     flow.follow(route.job);
   }
 
@@ -299,10 +351,10 @@ export function screens(
     if (route.screen === "identify") {
       if (route.job !== null) return void openJobRecord(route.job, !first);
       const test = before.test;
-      // After a reload, name, units and record come from the form's.
-      if (first && test) fillForm({ ...test });
-      mount(test ? identifyScreen(test) : noRecordView(), "Identify · Tunewright", !first);
-      return;
+      // After a reload the record comes from the tab's memory.
+      if (first && test && !entryState().start) fillForm({ ...test });
+      restoreStart();
+      return void showIdentify(test, !first);
     }
     if (route.screen === "range") return void openRange(route, !first);
     if (route.screen === "relay") return void openRelay(route, !first);
@@ -313,6 +365,7 @@ export function screens(
     void refreshRecent();
   }
 
+  loadAhead();
   // The address follows the choices, and the title follows the loop's name.
   store.subscribe((workspace, previous) => {
     const route = workspace.route;

@@ -11,11 +11,11 @@ import { addressOfJob, formatRoute, parseRoute, rewriteAddress, showsJob, showsS
 import type { JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 import type { CandidateChoice } from "./views/cards/candidates_card.ts";
-import { designView } from "./views/design.ts";
-import { identifyView, noRecordView } from "./views/identify.ts";
 import type { RelayView } from "./views/relay.ts";
 import { startView } from "./views/start.ts";
 import type { StartView, View } from "./views/start.ts";
+
+const loadDesign = () => import("./views/design.ts");
 
 export interface Screens {
   /** Shows the screen of the address. `first`: nothing was shown before, and the focus stays. */
@@ -71,7 +71,8 @@ export function screens(
 
   /** The start screen is kept: typed text is still there on return. */
   function startScreen(): StartView {
-    start ??= startView(store, {
+    if (start) return start;
+    start = startView(store, {
       onJob: (job, all) => flow.open(job, all ? "compare" : "design"),
       onRecord: openRecord,
       onRelay(form, values) {
@@ -80,6 +81,9 @@ export function screens(
       },
       onModel: (form, values) => typed(showsStart, { screen: "new", plant: form, values }),
     });
+    // Read before it is needed, as soon as somebody works here.
+    for (const event of ["pointerdown", "focusin", "dragenter"])
+      start.element.addEventListener(event, () => void loadDesign().catch(() => undefined), { once: true });
     return start;
   }
 
@@ -141,10 +145,14 @@ export function screens(
     return [];
   }
 
-  function identifyScreen(test: IdentifyRequest, region = false): View {
+  /** `test`: the record, or the reason why there is none ("": none was dropped). */
+  async function openIdentify(route: Route, test: IdentifyRequest | string, focus: boolean, region = false): Promise<void> {
+    const part = await later(import("./views/identify.ts"), route, "Identify", focus);
+    if (!part) return;
+    if (typeof test === "string") return mount(part.noRecordView(test), "Identify · Tunewright", focus);
     const address = location.hash;
     const first = remembered?.address === address ? remembered.choice : { structure: "", region };
-    return identifyView(test, { methods: startScreen().methods(), first }, announce, {
+    const view = part.identifyView(test, { methods: startScreen().methods(), first }, announce, {
       onRemember(choice) {
         remembered = { address, choice };
       },
@@ -154,6 +162,7 @@ export function screens(
       },
       onTune: tuneSubject,
     });
+    mount(view, "Identify · Tunewright", focus);
   }
 
   /** A job's record, with the methods and settings of its request. */
@@ -163,7 +172,7 @@ export function screens(
       const job = known?.id === id && known.request ? known : await getJob(id);
       const { name, units, record, identify } = job.request ?? {};
       if (store.get().route !== route) return;
-      if (!record || !job.request) return mount(noRecordView(), "Identify · Tunewright", focus);
+      if (!record || !job.request) return void openIdentify(route, "", focus);
       fillForm(job.request);
       const test: IdentifyRequest = {
         ...(name ? { name } : {}),
@@ -172,9 +181,9 @@ export function screens(
         ...(identify ? { identify } : {}),
       };
       store.set((workspace) => ({ ...workspace, test }));
-      mount(identifyScreen(test, job.request["uncertainty"] === "identified"), "Identify · Tunewright", focus);
+      void openIdentify(route, test, focus, job.request["uncertainty"] === "identified");
     } catch (error) {
-      if (store.get().route === route) mount(noRecordView(sentenceOf(error)), "Identify · Tunewright", focus);
+      if (store.get().route === route) void openIdentify(route, sentenceOf(error), focus);
     }
   }
 
@@ -261,6 +270,12 @@ export function screens(
     if (part) mount(part.methodsView(store, route.id), "Methods · Tunewright", focus);
   }
 
+  async function openDesign(route: Route, focus: boolean): Promise<void> {
+    const part = await later(loadDesign(), route, "Design", focus);
+    const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
+    if (part) mount(part.designView(store, announce, events), "Design · Tunewright", focus);
+  }
+
   async function openCompare(route: Route, focus: boolean): Promise<void> {
     const part = await later(import("./views/compare.ts"), route, "Compare", focus);
     const events = { onJob: flow.take, onCompareAll: flow.compareAll };
@@ -283,10 +298,8 @@ export function screens(
     // A link to the table alone shows the earlier choices; its address then contains them.
     const { drawn: rows, rankMs } = store.get();
     if (route.screen === "compare") rewriteAddress(route, { ...route, rows, rankMs });
-    if (route.screen === "design") {
-      const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
-      mount(designView(store, announce, events), "Design · Tunewright", focus);
-    } else void openCompare(route, focus);
+    if (route.screen === "design") void openDesign(route, focus);
+    else void openCompare(route, focus);
     flow.follow(route.job);
   }
 
@@ -301,8 +314,7 @@ export function screens(
       const test = before.test;
       // After a reload, name, units and record come from the form's.
       if (first && test) fillForm({ ...test });
-      mount(test ? identifyScreen(test) : noRecordView(), "Identify · Tunewright", !first);
-      return;
+      return void openIdentify(route, test ?? "", !first);
     }
     if (route.screen === "range") return void openRange(route, !first);
     if (route.screen === "relay") return void openRelay(route, !first);

@@ -32,6 +32,8 @@ export interface MyControllerCard {
   /** The values of u in the loop's record, which tell its range if its unit does not. */
   setOutput(values: readonly (number | null)[]): void;
   /** Without reporting. `form`: the textbook form that stands in place of a product, where forms are offered. */
+  /** As if it were chosen in the field: with the usual ranges, and reported. */
+  choose(id: string | undefined): void;
   set(mine: MyController | null, form?: TextbookForm): void;
   /** The content of the fields. A missing fact is not a fault: the card names it. */
   read(): { mine: MyController | null; errors: FieldError[] };
@@ -62,7 +64,7 @@ export function myControllerCard(
       placeholder: "type a maker or a name, such as DeltaV",
       pointer: () => "/implement/product",
       find: (typed) => [...(forms ? findForms(typed) : []), ...findProducts(products, typed).map(choiceOf)],
-      onChoose: choose,
+      onChoose: (choice) => choose(choice?.id),
       onLeft: change,
     },
     errors,
@@ -86,7 +88,7 @@ export function myControllerCard(
   sampling.input.addEventListener("change", change);
   const needed = h("p", { class: "hint", role: "status", hidden: true });
   const fields = h("div", { class: "needs", hidden: true }, measurement.element, output.element, sampling.element);
-  const forget = h("button", { type: "button", class: "quiet", hidden: true, onclick: () => choose(null) }, "No controller");
+  const forget = h("button", { type: "button", class: "quiet", hidden: true, onclick: () => choose(undefined) }, "No controller");
   const facts = h("details", { class: "facts", hidden: true }, h("summary", {}, "Ranges and sample time"));
   if (forms) facts.append(fields);
   const notes = [needed, ...below];
@@ -107,9 +109,10 @@ export function myControllerCard(
     aside: evidenceWords(product.evidence),
   });
 
-  function choose(choice: Choice | null): void {
-    form = TEXTBOOK_FORMS.find((name) => name === choice?.id) ?? form;
-    const product = products.find((item) => item.id === choice?.id);
+  /** `id`: of a product or a textbook form; undefined: none. */
+  function choose(id: string | undefined): void {
+    form = TEXTBOOK_FORMS.find((name) => name === id) ?? form;
+    const product = products.find((item) => item.id === id);
     chosen = product ? { product: product.id, name: productTitle(product), needs: product.needs as Need[] } : null;
     propose();
     show();
@@ -194,6 +197,7 @@ export function myControllerCard(
     setOutput(values) {
       recorded = values;
     },
+    choose,
     set(mine, given) {
       form = given ?? form;
       chosen = mine ? { product: mine.product, name: mine.name, needs: mine.needs } : null;

@@ -21,6 +21,7 @@ COPY script/bootstrap script/bootstrap
 COPY web/package.json web/package-lock.json web/.npmrc web/
 RUN script/bootstrap page
 COPY web web
+COPY docs docs
 RUN cd web && npm run build && npm ls --omit=dev >../page-packages.txt
 
 FROM debian:$DEBIAN-slim

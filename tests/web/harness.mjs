@@ -22,7 +22,7 @@ async function bundleUnitTests() {
   rmSync(outdir, { recursive: true, force: true });
   mkdirSync(outdir, { recursive: true });
   const folder = path.join(here, "unit");
-  const entryPoints = readdirSync(folder)
+  const entryPoints = readdirSync(folder, { recursive: true })
     .filter((name) => name.endsWith(".test.ts"))
     .map((name) => path.join(folder, name));
   await build({
@@ -35,7 +35,9 @@ async function bundleUnitTests() {
     outExtension: { ".js": ".mjs" },
     logLevel: "warning",
   });
-  return readdirSync(outdir).map((name) => path.join(outdir, name));
+  return readdirSync(outdir, { recursive: true })
+    .filter((name) => name.endsWith(".mjs"))
+    .map((name) => path.join(outdir, name));
 }
 
 function runTests(files, environment = {}) {

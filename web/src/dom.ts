@@ -137,3 +137,25 @@ export function uniqueId(prefix: string): string {
 /** Long names of parameters, which may be broken between their parts. */
 export const breakable = (name: string): (string | HTMLElement)[] =>
   name.split(/(?<=[._])/).flatMap((part, index) => (index === 0 ? [part] : [h("wbr", {}), part]));
+
+/** Opens a modal dialog with a heading and a button that closes it; it is removed when it closes, and the focus returns to where it was. */
+export function openDialog(title: string, name: string, ...content: Child[]): HTMLDialogElement {
+  const heading = h("h2", { id: uniqueId("dialog") }, title);
+  const close = h("button", { type: "button", class: "quiet", onclick: () => dialog.close() }, "Close");
+  const dialog = h(
+    "dialog",
+    { class: `modal ${name}`, "aria-labelledby": heading.id },
+    h("div", { class: "modal-head" }, heading, close),
+    content,
+  );
+  dialog.addEventListener("close", () => dialog.remove());
+  // A press on the backdrop has the dialog itself as its target, outside its rectangle.
+  dialog.addEventListener("pointerdown", (event) => {
+    const { left, right, top, bottom } = dialog.getBoundingClientRect();
+    const inside = event.clientX >= left && event.clientX <= right && event.clientY >= top && event.clientY <= bottom;
+    if (event.target === dialog && !inside) dialog.close();
+  });
+  document.body.append(dialog);
+  dialog.showModal();
+  return dialog;
+}

@@ -6,8 +6,8 @@ import { shown } from "./store.ts";
 import type { Store } from "./store.ts";
 import { themeButton } from "./theme.ts";
 
-/** Marks the current screen, and links to the screens of the last job. */
-export function header(store: Store): HTMLElement {
+/** Marks the current screen, and links to the screens of the last job. `tools`: the buttons of help and search. */
+export function header(store: Store, tools: HTMLElement[]): HTMLElement {
   const links = {
     start: h("a", { href: "#/" }, "Start"),
     identify: h("a", { href: "#/identify" }, "Identify"),
@@ -53,6 +53,6 @@ export function header(store: Store): HTMLElement {
     { class: "top" },
     h("a", { class: "brand", href: "#/" }, "Tunewright"),
     nav,
-    h("div", { class: "tools" }, h("a", { href: "openapi.json" }, "API"), themeButton()),
+    h("div", { class: "tools" }, tools, h("a", { href: "openapi.json" }, "API"), themeButton()),
   );
 }

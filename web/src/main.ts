@@ -7,11 +7,11 @@ import { getProducts } from "./api/products.ts";
 import { h } from "./dom.ts";
 import { header } from "./header.ts";
 import { jobFlow } from "./job_flow.ts";
+import { shortcuts } from "./reach/shortcuts.ts";
 import { rememberedMine } from "./my_controller.ts";
 import { rememberedTest, rememberTest } from "./current_record.ts";
 import { screens } from "./screens.ts";
 import { createStore } from "./store.ts";
-import { applyTheme } from "./theme.ts";
 import { askInDialog } from "./views/key_dialog.ts";
 
 const store = createStore({
@@ -88,8 +88,7 @@ window.addEventListener("error", (event) => fault(event.error ?? event.message))
 window.addEventListener("unhandledrejection", (event) => fault(event.reason));
 askForKeyWith(askInDialog);
 watchPresses(document);
-applyTheme();
-document.body.append(skip, header(store), stage, status);
+document.body.append(skip, header(store, shortcuts(store, announce)), stage, status);
 const shownScreen = screens(store, jobFlow(store), stage, announce, loadLists());
 skip.addEventListener("click", (event) => {
   event.preventDefault();

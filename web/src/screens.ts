@@ -79,7 +79,8 @@ export function screens(
 
   /** The start screen is kept: typed text is still there on return. */
   function startScreen(): StartView {
-    start ??= startView(store, {
+    if (start) return start;
+    start = startView(store, {
       onJob: (job, all) => flow.open(job, all ? "compare" : "design"),
       onRecord: openRecord,
       onRelay(form, values) {
@@ -309,16 +310,16 @@ export function screens(
     if (part) mount(part.methodsView(store, route.id), "Methods · Tunewright", focus);
   }
 
-  async function openCompare(route: Route, focus: boolean): Promise<void> {
-    const part = await later(import("./views/compare.ts"), route, "Compare", focus);
-    const events = { onJob: flow.take, onCompareAll: flow.compareAll };
-    if (part) mount(part.compareView(store, announce, events), "Compare · Tunewright", focus);
-  }
-
   async function openDesign(route: Route, focus: boolean): Promise<void> {
     const part = await later(loadDesign(), route, "Design", focus);
     const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
     if (part) mount(part.designView(store, announce, events), "Design · Tunewright", focus);
+  }
+
+  async function openCompare(route: Route, focus: boolean): Promise<void> {
+    const part = await later(import("./views/compare.ts"), route, "Compare", focus);
+    const events = { onJob: flow.take, onCompareAll: flow.compareAll };
+    if (part) mount(part.compareView(store, announce, events), "Compare · Tunewright", focus);
   }
 
   function openJobScreen(route: JobRoute, focus: boolean): void {

@@ -1,4 +1,5 @@
-// Light or dark: the system's setting, unless the reader chose.
+// Light or dark: the system's setting, unless the reader chose. Loading it applies the choice: the served documents have
+// no other script.
 import { h } from "./dom.ts";
 
 type Theme = "system" | "light" | "dark";
@@ -17,10 +18,12 @@ function stored(): Theme {
 
 let current: Theme = stored();
 
-export function applyTheme(): void {
+function applyTheme(): void {
   if (current === "system") delete document.documentElement.dataset["theme"];
   else document.documentElement.dataset["theme"] = current;
 }
+
+applyTheme();
 
 /** A button that cycles through system, light and dark. */
 export function themeButton(): HTMLButtonElement {

@@ -27,12 +27,13 @@ constexpr const char* kPageIsMissing =
     "<a href=\"/v1/methods\">the tuning methods</a>, <a href=\"/v1/examples\">examples of requests</a>.</p>\n</html>\n";
 
 std::string type_of(const std::string& path) {
-    constexpr std::array<std::pair<const char*, const char*>, 12> types{{
+    constexpr std::array<std::pair<const char*, const char*>, 13> types{{
         {".html", "text/html; charset=utf-8"},
         {".js", "text/javascript; charset=utf-8"},
         {".css", "text/css; charset=utf-8"},
         {".svg", "image/svg+xml"},
         {".png", "image/png"},
+        {".webp", "image/webp"},
         {".ico", "image/x-icon"},
         {".json", "application/json"},
         {".map", "application/json"},

@@ -157,7 +157,11 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
     },
     unmatched: () => (chosen || isOpen() ? "" : input.value.trim()),
     refresh() {
-      if (isOpen()) open(false);
+      if (!isOpen()) return;
+      const marked = found[active]?.id;
+      open(false);
+      const at = found.findIndex((choice) => choice.id === marked);
+      if (at > 0) activate(at);
     },
   };
 }

@@ -5,6 +5,7 @@ import type { CursorPosition, Listener } from "./cursor.ts";
 import { dataTable } from "./data_table.ts";
 import { download, exportHeight, frameToCsv, frameToSvg, lightPalette, svgToPng } from "./export.ts";
 import type { Frame } from "./frame.ts";
+import { KEYS_SENTENCE } from "./keys.ts";
 import { layoutFrame, wholeView } from "./layout.ts";
 import type { Layout, PaneBox, View } from "./layout.ts";
 import { pointLabel } from "./labels.ts";
@@ -32,8 +33,6 @@ export interface PlotHandles {
 /** Announces a sentence to readers who do not see the plot. */
 export type Announce = (sentence: string) => void;
 
-const KEYS =
-  "Arrow keys move the cursor, with Shift in bigger steps; plus and minus zoom; 0 shows everything; T shows the data as a table.";
 const DRAG_MIN_PX = 6;
 const HANDLE_PX = 14;
 const TOUCH_PX = 28;
@@ -352,7 +351,7 @@ export function createPlot(
     const beside = other ? given : given.alternative;
     otherButton.hidden = !given.alternative;
     say(otherButton, beside?.title ?? "");
-    say(description, `${frame.description} ${KEYS}`);
+    say(description, `${frame.description} ${KEYS_SENTENCE}`);
     if (frame.ownLegend) legend.replaceChildren(paneLegend(frame));
   };
   writeTexts();

@@ -320,9 +320,13 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
   picker.setProducts(store.get().products);
   picker.set(mine, form);
   const leave = store.subscribe((workspace, previous) => {
-    if (workspace.products === previous.products) return;
-    picker.setProducts(workspace.products);
-    nameMine();
+    if (workspace.products !== previous.products) {
+      picker.setProducts(workspace.products);
+      nameMine();
+    }
+    // Chosen elsewhere, such as in the search over the page.
+    const { mine: other } = workspace;
+    if (other && other !== previous.mine && other.product !== mine?.product) picker.choose(other.product);
   });
 
   /** A request names its product by the id only. */

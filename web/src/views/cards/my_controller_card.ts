@@ -31,6 +31,8 @@ export interface MyControllerCard {
   /** The values of u in the loop's record, which show its range if its unit does not. */
   setOutput(values: readonly (number | null)[]): void;
   /** Without reporting. `form`: the textbook form that stands in place of a product, where forms are offered. */
+  /** As if it were chosen in the field: with the usual ranges, and reported. */
+  choose(id: string | undefined): void;
   set(mine: MyController | null, form?: TextbookForm): void;
   /** The fields as typed, by names for an address; the product itself is set by `set`. */
   texts(): Record<string, string>;
@@ -65,7 +67,7 @@ export function myControllerCard(
       placeholder: "type a maker or a name, such as DeltaV",
       pointer: () => "/implement/product",
       find: (typed) => [...(forms ? findForms(typed) : []), ...findProducts(products, typed).map(choiceOf)],
-      onChoose: choose,
+      onChoose: (choice) => choose(choice?.id),
       onLeft: change,
     },
     errors,
@@ -89,7 +91,7 @@ export function myControllerCard(
   sampling.input.addEventListener("change", change);
   const needed = h("p", { class: "hint", role: "status", hidden: true });
   const fields = h("div", { class: "needs", hidden: true }, measurement.element, output.element, sampling.element);
-  const forget = h("button", { type: "button", class: "quiet", hidden: true, onclick: () => choose(null) }, "No controller");
+  const forget = h("button", { type: "button", class: "quiet", hidden: true, onclick: () => choose(undefined) }, "No controller");
   const facts = h("details", { class: "facts", hidden: true }, h("summary", {}, "Ranges and sample time"));
   if (forms) facts.append(fields);
   const notes = [needed, ...below];
@@ -110,9 +112,10 @@ export function myControllerCard(
     aside: evidenceWords(product.evidence),
   });
 
-  function choose(choice: Choice | null): void {
-    form = TEXTBOOK_FORMS.find((name) => name === choice?.id) ?? form;
-    const product = products.find((item) => item.id === choice?.id);
+  /** `id`: of a product or a textbook form; undefined: none. */
+  function choose(id: string | undefined): void {
+    form = TEXTBOOK_FORMS.find((name) => name === id) ?? form;
+    const product = products.find((item) => item.id === id);
     chosen = product ? { product: product.id, name: productTitle(product), needs: product.needs as Need[] } : null;
     propose();
     show();
@@ -206,6 +209,7 @@ export function myControllerCard(
     setOutput(values) {
       recorded = values;
     },
+    choose,
     set(mine, given) {
       // Half a range, or a name that no product has yet, stays as typed.
       const same = forms ? false : sameImplement(read().mine, mine);

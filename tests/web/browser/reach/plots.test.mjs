@@ -1,7 +1,7 @@
 // Plots in use: zoom, linked zoom, focus that moves nothing, and curves that are readable.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { browserTests } from "../harness.mjs";
+import { browserTests } from "../../harness.mjs";
 
 const { withPage } = browserTests();
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { extent, makeScale, ticks, tickText, tickTexts, usableRange } from "../../../web/src/plot/axis.ts";
+import { extent, makeScale, ticks, tickText, tickTexts, usableRange } from "../../../../web/src/plot/axis.ts";
 
 test("axes without data have a range and ticks, linear and logarithmic", () => {
   for (const kind of ["linear", "log"] as const) {

@@ -1,13 +1,13 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { nearestIndex } from "../../../web/src/plot/cursor.ts";
-import { columnExtremes, drawableRuns } from "../../../web/src/plot/dense.ts";
-import { frameToCsv, frameToSvg } from "../../../web/src/plot/export.ts";
-import type { Frame, Mark } from "../../../web/src/plot/frame.ts";
-import { markLabels } from "../../../web/src/plot/labels.ts";
-import { layoutFrame, wholeView } from "../../../web/src/plot/layout.ts";
-import { drawLayout, pointNear, tracePath } from "../../../web/src/plot/marks.ts";
-import { zoomAbout, zoomToRectangle } from "../../../web/src/plot/zoom.ts";
+import { nearestIndex } from "../../../../web/src/plot/cursor.ts";
+import { columnExtremes, drawableRuns } from "../../../../web/src/plot/dense.ts";
+import { frameToCsv, frameToSvg } from "../../../../web/src/plot/export.ts";
+import type { Frame, Mark } from "../../../../web/src/plot/frame.ts";
+import { markLabels } from "../../../../web/src/plot/labels.ts";
+import { layoutFrame, wholeView } from "../../../../web/src/plot/layout.ts";
+import { drawLayout, pointNear, tracePath } from "../../../../web/src/plot/marks.ts";
+import { zoomAbout, zoomToRectangle } from "../../../../web/src/plot/zoom.ts";
 
 const plane: Frame = {
   title: "Curve <&> circle",

@@ -171,7 +171,8 @@ export type components = {
       ultimate?: components["schemas"]["UltimateTest"];
       identify?: components["schemas"]["Identify"];
       tune?: components["schemas"]["Method"][] | "all";
-      baseline?: components["schemas"]["Controller"] | components["schemas"]["BaselineSettings"] | "from-record";
+      controllers?: (components["schemas"]["Controller"] | components["schemas"]["TypedSettings"])[];
+      baseline?: components["schemas"]["Controller"] | components["schemas"]["TypedSettings"] | "from-record";
       implement?: components["schemas"]["Implement"];
       evaluate?: components["schemas"]["Evaluate"];
       uncertainty?: "auto" | "none" | "identified";
@@ -295,7 +296,7 @@ export type components = {
       action: "reverse" | "direct";
       b_equivalent: number;
     };
-    BaselineSettings: {
+    TypedSettings: {
       product: string;
       settings: {
         [key: string]: number | string | boolean;
@@ -741,16 +742,19 @@ export type components = {
       as_typed: {
         [key: string]: string;
       };
-      snippets?: {
-        name: string;
-        text: string;
-      }[];
+      snippets?: components["schemas"]["Snippet"][];
       realised: components["schemas"]["Controller"];
-      notes: {
-        code: string;
-        detail: string;
-        deviation: boolean;
-      }[];
+      notes: components["schemas"]["SettingsNote"][];
+      product: string;
+    };
+    Snippet: {
+      name: string;
+      text: string;
+    };
+    SettingsNote: {
+      code: string;
+      detail: string;
+      deviation: boolean;
     };
     Implemented: {
       sample_time: number | null;
@@ -1425,11 +1429,7 @@ export type components = {
     };
     ScheduleSettingsAnswer: {
       rows: components["schemas"]["SettingsRow"][];
-      notes: {
-        code: string;
-        detail: string;
-        deviation: boolean;
-      }[];
+      notes: components["schemas"]["SettingsNote"][];
     };
     SettingsRow: {
       at: number;
@@ -1471,7 +1471,7 @@ export type SetpointFilter = components['schemas']['SetpointFilter'];
 export type Filter = components['schemas']['Filter'];
 export type ParallelController = components['schemas']['ParallelController'];
 export type SeriesController = components['schemas']['SeriesController'];
-export type BaselineSettings = components['schemas']['BaselineSettings'];
+export type TypedSettings = components['schemas']['TypedSettings'];
 export type Implement = components['schemas']['Implement'];
 export type Evaluate = components['schemas']['Evaluate'];
 export type Actuator = components['schemas']['Actuator'];
@@ -1515,6 +1515,8 @@ export type Frequency = components['schemas']['Frequency'];
 export type Verification = components['schemas']['Verification'];
 export type IndexErrors = components['schemas']['IndexErrors'];
 export type SettingsAnswer = components['schemas']['SettingsAnswer'];
+export type Snippet = components['schemas']['Snippet'];
+export type SettingsNote = components['schemas']['SettingsNote'];
 export type Implemented = components['schemas']['Implemented'];
 export type Difference = components['schemas']['Difference'];
 export type CostSurface = components['schemas']['CostSurface'];

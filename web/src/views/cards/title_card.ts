@@ -18,7 +18,7 @@ export interface TitleCard {
   /** `entry`: the controller on the screen, if there is one; report and change sheet are about it. */
   show(job: Job | null, entry?: number | null): void;
   /** The request that leads to the displayed result; `own`: it is the job's own, for which there is a report. */
-  setShown(shown: { path: string; request: unknown }, own: boolean): void;
+  setShown(shown: { request: unknown }, own: boolean): void;
 }
 
 /** `screen`: the heading of a job without a name. `actions`: in addition to the links that every job has. */
@@ -80,8 +80,8 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       menu.show("v1/jobs", request);
       showPages(true);
     },
-    setShown({ path, request }, own) {
-      menu.show(path, request);
+    setShown({ request }, own) {
+      menu.show("v1/jobs", request);
       showPages(own);
     },
   };

@@ -3,7 +3,7 @@ import { sentenceOf } from "../../api/client.ts";
 import { newest } from "../../api/latest.ts";
 import { getProduct } from "../../api/products.ts";
 import { controllerInRecord } from "../../api/records.ts";
-import type { Baseline, FieldError, Filter, RecordedTest, SettingValue, TuningRequest, Units } from "../../api/types.ts";
+import type { FieldError, Filter, GivenController, RecordedTest, SettingValue, TuningRequest, Units } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { choiceField, textField } from "../../form/controls.ts";
 import type { FormErrors } from "../../form/errors.ts";
@@ -11,7 +11,7 @@ import { keptNote } from "../../form/kept_note.ts";
 import { parseNumber } from "../../form/number.ts";
 import { productFields } from "../../form/product_fields.ts";
 import { typedParts } from "../../form/typed.ts";
-import { mineOfRequest, typedBaseline } from "../../my_controller.ts";
+import { mineOfRequest, typedInto } from "../../my_controller.ts";
 import type { MyController } from "../../my_controller.ts";
 import { exactText } from "../../words/numbers.ts";
 import { foundWords } from "../../words/settings.ts";
@@ -167,10 +167,10 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     }
   }
 
-  function readOwn(): { baseline: Baseline | undefined; errors: FieldError[] } {
+  function readOwn(): { baseline: GivenController | undefined; errors: FieldError[] } {
     const { settings, errors: faults } = own.read();
     if (!settings || !mine) return { baseline: undefined, errors: faults };
-    return { baseline: typedBaseline(mine, settings), errors: faults };
+    return { baseline: typedInto(mine, settings), errors: faults };
   }
 
   label();
@@ -265,7 +265,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       const others = [filter, ...(form.input.value === "npid" ? [delta] : [])].map((field) => field.input.value.trim());
       if ([...typed, ...others].every((text) => text === "")) return { baseline: undefined, errors: [] };
       const faults: FieldError[] = [];
-      const baseline: Baseline = { form: form.input.value, ...rest };
+      const baseline: GivenController = { form: form.input.value, ...rest };
       names().forEach((key, index) => {
         const text = typed[index]!;
         if (text === "" && key !== "Kp") {

@@ -24,7 +24,7 @@ std::string short_plant(const Contract& contract, const Value& plant) {
     return Json{{"type", Json::parse(text).at("type")}}.dump();
 }
 
-bool is_todays(const TuningEntry& entry) { return entry.method == "baseline"; }
+bool is_todays(const TuningEntry& entry) { return entry.is_baseline(); }
 
 /// The best controller that was tuned; null if there is none.
 const TuningEntry* first_ranked(const TuningResult& result) {

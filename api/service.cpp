@@ -140,7 +140,7 @@ Json identify_json(const CsvRequest& question) {
 }
 
 std::string method_label(const JobRequest& request) {
-    if (request.tune.empty()) return "none";
+    if (request.tune.empty()) return kGivenMethod;
     return request.tune.size() == 1 ? request.tune.front().method : "several";
 }
 
@@ -154,13 +154,13 @@ Expected<TuningResult> tuned(JobRequest request, const RunControl& control) {
     if (request.baseline_from_record) {
         auto today = recorded_controller(request.read.record, request.device ? &*request.device : nullptr);
         if (!today) return Error{today.error().kind, "baseline", today.error().message};
-        request.baseline = device::continuous(today->found.pid);
+        request.baseline = SentController{{}, {}, GivenController(device::continuous(today->found.pid))};
         of_baseline = std::move(today->found.warnings);
     }
     auto result = tune(to_engine(std::move(request)), control);
     if (!result || !result->model) return result;
     for (TuningEntry& entry : result->controllers)
-        if (entry.method == "baseline" && entry.evaluation)
+        if (entry.is_baseline() && entry.evaluation)
             entry.evaluation->warnings.insert(entry.evaluation->warnings.begin(), of_baseline.begin(),
                                               of_baseline.end());
     if (recorded) {
@@ -287,8 +287,8 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     const auto& request = std::get<EvaluateRequest>(decoded);
 
     const auto result =
-        evaluate_all(*request.subject, request.controllers, request.evaluate, request.device, labels_of(request.units),
-                     control, request.model ? &*request.model : nullptr, request.given_steps);
+        evaluate_all(*request.subject, given(request.controllers), request.evaluate, request.device,
+                     labels_of(request.units), control, request.model ? &*request.model : nullptr, request.given_steps);
     if (!result) return refusal(to_problem(result.error()));
     Writer out;
     evaluate_answer_contract().write(*result, out);

@@ -129,8 +129,7 @@ Codec<MethodRequest> method_request() {
 }
 
 Codec<std::vector<MethodRequest>> tune_list() {
-    constexpr std::size_t kMaxMethods = 50;
-    auto codec = list_of(method_request(), 1, kMaxMethods);
+    auto codec = list_of(method_request(), 0, kMaxMethods);
     codec.read = [list = codec.read](const Json& value, std::vector<MethodRequest>& target, Reader& reader) {
         if (value == kAll) {
             target = {{kAll, {}}};

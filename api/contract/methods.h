@@ -13,7 +13,8 @@ namespace tunewright::api {
 /// options.
 Codec<MethodRequest> method_request();
 
-/// An array of methods, or "all".
+inline constexpr std::size_t kMaxMethods = 50;
+/// An array of at most kMaxMethods methods, or "all".
 Codec<std::vector<MethodRequest>> tune_list();
 
 /// `options` of an entry of this method: those with a default first, in the order in which the method describes them.

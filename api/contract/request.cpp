@@ -18,8 +18,18 @@ namespace tunewright::api {
 namespace {
 
 // Checks that every plant forms a loop with the controller at the reader's place.
-void check_loops(const AnalysedPlant& subject, const Controller& controller, Reader& reader) {
-    if (const auto fault = loop_fault(subject, controller)) reader.fault_below(fault->where, 1, fault->message);
+void check_loops(const AnalysedPlant& subject, const std::optional<SentController>& controller, Reader& reader) {
+    if (!controller || !controller->given) return;
+    if (const auto fault = loop_fault(subject, controller->given->law))
+        reader.fault_below(fault->where, 1, fault->message);
+}
+
+void check_loops(const AnalysedPlant& subject, const std::vector<SentController>& controllers, Reader& reader) {
+    const Reader::At list(reader, "controllers");
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+        const Reader::At at(reader, i);
+        check_loops(subject, controllers[i], reader);
+    }
 }
 
 template <class Request>
@@ -32,12 +42,14 @@ void resolve_record(const Json&, Request& request, Reader& reader) {
 // A request with Ku and Pu alone evaluates no loop, so members about a loop are not allowed.
 void check_ultimate(const Json& value, JobRequest& request, Reader& reader) {
     if (!value.contains("ultimate")) return;
-    for (const char* judged : {"baseline", "implement", "evaluate", "identify", "uncertainty"})
+    for (const char* judged : {"controllers", "baseline", "implement", "evaluate", "identify", "uncertainty"})
         if (value.contains(judged))
             reader.fault_at(judged,
                             std::string(judged) + " needs a plant or a record: leave it out together with ultimate.");
     if (!value.contains("tune")) request.tune = {MethodRequest{"all", {}}};
 }
+
+constexpr std::size_t kMaxControllers = 50;
 
 const std::vector<std::string> kJobSources = {"plant", "record", "ultimate"},
                                kDesignSources = {"plant", "record", "model"}, kEvaluateSources = {"plant", "model"};
@@ -70,34 +82,31 @@ constexpr const char* kFromRecord = "from-record";
 void read_baseline(const Json& value, JobRequest& request, Reader& reader) {
     request.baseline_from_record = value == kFromRecord;
     if (request.baseline_from_record) return;
-    const bool settings = value.is_object() && value.contains("product");
-    if (settings) return object(baseline_settings_contract()).read(value, request.baseline_settings.emplace(), reader);
-    maybe(one_of(controller_contract())).read(value, request.baseline, reader);
+    maybe(sent_controller()).read(value, request.baseline, reader);
 }
 
 void write_baseline(const JobRequest& request, Writer& out) {
     if (request.baseline_from_record) return out.text(kFromRecord);
-    if (request.baseline_settings) return baseline_settings_contract().write(*request.baseline_settings, out);
-    maybe(one_of(controller_contract())).write(request.baseline, out);
+    maybe(sent_controller()).write(request.baseline, out);
 }
 
 Json baseline_schema(SchemaBook& book) {
-    return Json{{"oneOf", Json::array({one_of(controller_contract()).schema(book),
-                                       baseline_settings_contract().schema(book), Json{{"const", kFromRecord}}})}};
+    Json schema = sent_controller().schema(book);
+    schema["oneOf"].push_back({{"const", kFromRecord}});
+    return schema;
 }
 
-// Converts settings that are typed into a product to the ideal form, which is then the baseline.
-void check_baseline(JobRequest& request, const std::string& time, Reader& reader) {
-    if (!seconds_per_time(time, reader)) return;
-    const Reader::At at(reader, "baseline");
-    request.baseline_device = device_of(request.baseline_settings->device(request.implement), time, reader);
-    if (!request.baseline_device) return;
-    const std::size_t before = reader.count();
-    check_needs(*request.baseline_device, reader);
-    if (!reader.clean_since(before)) return;
-    const auto fitted = device::fit(*request.baseline_device, request.baseline_settings->settings);
-    if (!fitted) return reader.fault_below(fitted.error().where, 0, fitted.error().message);
-    request.baseline = device::continuous(fitted->controller);
+// Settings typed into a product need a unit of time; one fault for all of them.
+void resolve(std::vector<SentController>& controllers, const std::optional<GivenDevice>& implement,
+             const std::string& time, Reader& reader) {
+    const Reader::At list(reader, "controllers");
+    const bool typed =
+        std::ranges::any_of(controllers, [](const SentController& one) { return one.typed.has_value(); });
+    if (typed && !seconds_per_time(time, reader)) return;
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+        const Reader::At at(reader, i);
+        resolve(controllers[i], implement, time, reader);
+    }
 }
 
 template <class Request>
@@ -113,11 +122,18 @@ void resolve_device(Request& request, Reader& reader) {
 void check_implement(const Json&, JobRequest& request, Reader& reader) {
     resolve_device(request, reader);
     const std::string time = request.units.value_or(Units{}).time_or_default();
-    if (request.baseline_settings) check_baseline(request, time, reader);
+    resolve(request.controllers, request.implement, time, reader);
+    if (!request.baseline) return;
+    if (request.baseline->typed && !seconds_per_time(time, reader)) return;
+    const Reader::At at(reader, "baseline");
+    resolve(*request.baseline, request.implement, time, reader);
 }
 
 void check_job(const Json& value, JobRequest& request, Reader& reader) {
     request.given_steps = given_steps(value);
+    if (request.tune.empty() && request.controllers.empty())
+        reader.fault_at("tune", "tune has 0 elements; it must have 1 to " + std::to_string(kMaxMethods) +
+                                    ". It may be empty if controllers are given.");
     if (request.uncertainty == "identified" && !request.record && !request.model) {
         reader.fault_at("uncertainty",
                         "uncertainty is \"identified\", which needs a record. For a plant give uncertainty in the "
@@ -133,9 +149,10 @@ void check_job(const Json& value, JobRequest& request, Reader& reader) {
         reader.fault_at("baseline", "baseline is \"from-record\", which needs a record. Give the settings instead.");
     if (!request.plant) return;
     request.subject = subject_of(*request.plant, reader);
-    if (!request.subject || !request.baseline) return;
+    if (!request.subject) return;
+    check_loops(*request.subject, request.controllers, reader);
     const Reader::At at(reader, "baseline");
-    check_loops(*request.subject, *request.baseline, reader);
+    check_loops(*request.subject, request.baseline, reader);
 }
 
 /// The analysed plant of a model that was read without a fault.
@@ -149,12 +166,8 @@ std::optional<AnalysedPlant> made_of(const IdentifiedModel& model, Reader& reade
 void check_controllers(const Json& value, EvaluateRequest& request, Reader& reader) {
     request.given_steps = given_steps(value);
     request.subject = request.model ? made_of(*request.model, reader) : subject_of(*request.plant, reader);
-    if (!request.subject) return;
-    const Reader::At list(reader, "controllers");
-    for (std::size_t i = 0; i < request.controllers.size(); ++i) {
-        const Reader::At at(reader, i);
-        check_loops(*request.subject, request.controllers[i], reader);
-    }
+    resolve(request.controllers, request.implement, request.units.value_or(Units{}).time_or_default(), reader);
+    if (request.subject) check_loops(*request.subject, request.controllers, reader);
 }
 
 // The common members of a job and a design, other than the plant and the methods.
@@ -165,10 +178,7 @@ void add_judged(Description<Request>& d) {
          [](const Request& request, Writer& out) { write_baseline(request, out); }, baseline_schema,
          "Today's settings, which become the last entry: a controller, a product with its settings as typed, or "
          "from-record: as POST /v1/records/controller finds them.",
-         {},
-         [](const Request& request) {
-             return !request.baseline && !request.baseline_settings && !request.baseline_from_record;
-         })
+         {}, [](const Request& request) { return !request.baseline && !request.baseline_from_record; })
         .field("implement", &Request::implement, maybe(object(implement_contract())),
                "The user's own controller, for which entries are converted and evaluated.")
         .field("evaluate", &Request::evaluate, object(evaluate_options_contract()),
@@ -183,7 +193,11 @@ template <class Request>
 void add_question(Description<Request>& d) {
     d.field("identify", &Request::identify, object(identify_contract()), "Identification of the record.")
         .field("tune", &Request::tune, tune_list(),
-               "The methods, each with one entry of the answer; \"all\": every method.");
+               "The methods, each with one entry of the answer; \"all\": every method. May be empty if there are "
+               "controllers.")
+        .field("controllers", &Request::controllers, list_of(sent_controller(), 0, kMaxControllers),
+               "Controllers of your choice, judged like designs: each as a law or as the settings typed into a "
+               "product.");
     add_judged(d);
     d.field("uncertainty", &Request::uncertainty,
             choice<std::string>({{"auto", "auto"}, {"none", "none"}, {"identified", "identified"}}),
@@ -262,15 +276,14 @@ const Description<DesignRequest>& design_request_contract() {
 }
 
 const Description<EvaluateRequest>& evaluate_request_contract() {
-    constexpr std::size_t kMaxControllers = 50;
     static const auto description = [] {
         Description<EvaluateRequest> d("EvaluateRequest", "A plant, or the model of a record, and controllers for it.");
         add_labels(d);
         d.field("plant", &EvaluateRequest::plant, maybe(plant_model_or_text()),
                 "The plant; exactly one of plant and model.")
             .field("model", &EvaluateRequest::model, maybe(object(model_contract())), kModelSentence)
-            .field("controllers", &EvaluateRequest::controllers,
-                   list_of(one_of(controller_contract()), 1, kMaxControllers), "The controllers.", {.required = true})
+            .field("controllers", &EvaluateRequest::controllers, list_of(sent_controller(), 1, kMaxControllers),
+                   "The controllers, each as a law or as the settings typed into a product.", {.required = true})
             .field("evaluate", &EvaluateRequest::evaluate, object(evaluate_options_contract()),
                    "Options of the simulation and the answer.")
             .field("implement", &EvaluateRequest::implement, maybe(object(implement_contract())),
@@ -315,6 +328,12 @@ bool is_request_member(std::string_view name) {
            identify_request_contract().has(name) || range_request_contract().has(name);
 }
 
+std::vector<GivenController> given(const std::vector<SentController>& controllers) {
+    std::vector<GivenController> all;
+    for (const SentController& sent : controllers) all.push_back(*sent.given);
+    return all;
+}
+
 TuningRequest to_engine(JobRequest request) {
     TuningRequest out;
     out.subject = std::move(request.subject);
@@ -323,10 +342,9 @@ TuningRequest to_engine(JobRequest request) {
     out.model = std::move(request.model);
     out.identify = request.identify;
     out.tune = std::move(request.tune);
-    out.baseline = request.baseline;
+    out.controllers = given(request.controllers);
+    if (request.baseline) out.baseline = request.baseline->given;
     out.device = request.device;
-    if (request.baseline_settings)
-        out.baseline_settings = {*request.baseline_device, request.baseline_settings->settings};
     out.evaluate = request.evaluate;
     out.given_steps = request.given_steps;
     out.labels = labels_of(request.units);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "api/contract/device/device.h"
+#include "api/contract/device/given_controller.h"
 #include "api/contract/plant/plant.h"
 #include "api/contract/record.h"
 #include "api/contract/terms.h"
@@ -20,16 +21,15 @@ struct JobRequest : JobTerms {
     std::optional<IdentifiedModel> model;  ///< of a record, sent back by the client; of a design only
     IdentifyQuestion identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
-    std::optional<Controller> baseline;
-    std::optional<GivenBaseline> baseline_settings;  ///< instead of `baseline`: as typed into a product
-    bool baseline_from_record = false;               ///< instead of both: as the record shows it
+    std::vector<SentController> controllers;
+    std::optional<SentController> baseline;
+    bool baseline_from_record = false;  ///< instead of `baseline`: as the record shows it
     std::optional<GivenDevice> implement;
     EvaluateOptions evaluate;
     verdict::GivenSteps given_steps;  ///< of `evaluate`
     std::string uncertainty = "auto";
-    ReadRecord read;                                     ///< of `record`
-    std::optional<device::DeviceModel> device;           ///< of `implement`
-    std::optional<device::DeviceModel> baseline_device;  ///< of `baseline_settings`
+    ReadRecord read;                            ///< of `record`
+    std::optional<device::DeviceModel> device;  ///< of `implement`
 };
 
 /// A tuning request, answered while the client waits.
@@ -43,7 +43,7 @@ struct EvaluateRequest {
     std::optional<PlantModel> plant;
     std::optional<IdentifiedModel> model;  ///< instead of a plant: the model of a record, sent back by the client
     std::optional<AnalysedPlant> subject;  ///< the analysed plant
-    std::vector<Controller> controllers;
+    std::vector<SentController> controllers;
     std::optional<GivenDevice> implement;
     EvaluateOptions evaluate;
     verdict::GivenSteps given_steps;            ///< of `evaluate`
@@ -80,6 +80,9 @@ void add_labels(Description<Request>& d) {
     d.field("name", &Request::name, maybe(text(kMaxNameLength)), "A label, such as the loop's tag.")
         .field("units", &Request::units, maybe(object(units_contract())), "Labels of the units, echoed.");
 }
+
+/// The controllers of a request that was read without a fault.
+std::vector<GivenController> given(const std::vector<SentController>& controllers);
 
 TuningRequest to_engine(JobRequest request);
 

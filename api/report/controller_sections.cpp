@@ -5,6 +5,7 @@
 
 #include "api/report/figures.h"
 #include "api/report/sections.h"
+#include "engine/request/entry.h"
 
 namespace tunewright::api {
 namespace {
@@ -220,8 +221,10 @@ Html effect_section(const ReportInput& s) {
 }
 
 Html method_section(const ReportInput& s) {
-    Html out = element("p", element("strong", text_at(s.entry.at("title"))) + " (" + text_at(s.entry.at("method")) +
-                                "). " + text_at(s.entry.at("source")));
+    const std::string method = text_at(s.entry.at("method"));
+    Html out =
+        element("p", element("strong", text_at(s.entry.at("title"))) +
+                         (method == kGivenMethod ? ": " : " (" + method + "). ") + text_at(s.entry.at("source")));
     std::vector<Html> options;
     if (s.entry.at("options").value().is_object())
         for (const auto& [name, value] : s.entry.at("options").value().items())

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "api/contract/terms.h"
+#include "engine/request/entry.h"
 
 namespace tunewright::api {
 namespace {
@@ -47,6 +48,7 @@ ReportInput subject_at(const Json& document, std::string_view part) {
     return {.result = result,
             .request = root.at("request"),
             .entry = result.at(part),
+            .given = root.at(""),
             .index = 0,
             .today = {},
             .time = label(units, "time", "s"),
@@ -61,15 +63,20 @@ ReportInput subject_of(const Json& document, std::size_t index) {
     ReportInput subject{.result = all.result,
                         .request = all.request,
                         .entry = all.entry.at(index),
+                        .given = all.given,
                         .index = index,
                         .today = {},
                         .time = all.time,
                         .u = all.u,
                         .y = all.y};
+    std::size_t given = 0;
     for (std::size_t i = 0; i < all.entry.value().size(); ++i) {
         const JsonLocation other = all.entry.at(i);
-        if (i != index && text_at(other.at("method")) == "baseline" && other.at("controller").exists())
-            subject.today.emplace(other);
+        const std::string method = text_at(other.at("method"));
+        if (i != index && method == kBaselineMethod && other.at("controller").exists()) subject.today.emplace(other);
+        if (method != kGivenMethod) continue;
+        if (i == index) subject.given.pointer = all.request.at("controllers").at(given).pointer;
+        ++given;
     }
     return subject;
 }
@@ -82,7 +89,7 @@ std::size_t best_proposal(const ChosenEntry& found) {
     for (const Json& number : ranking) {
         if (!number.is_number_unsigned() || number.get<std::size_t>() >= controllers.size()) continue;
         const Json& entry = controllers[number.get<std::size_t>()];
-        if (entry.is_object() && entry.contains("controller") && entry.value("method", "") != "baseline")
+        if (entry.is_object() && entry.contains("controller") && entry.value("method", "") != kBaselineMethod)
             return number.get<std::size_t>();
     }
     return found.index;

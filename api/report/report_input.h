@@ -33,6 +33,7 @@ std::vector<double> numbers_at(const JsonLocation& place);
 /// The subject of a section: places in one document {result, request}.
 struct ReportInput {
     JsonLocation result, request, entry;
+    JsonLocation given;                 ///< the request's given controller that the entry is about, if it is one
     std::size_t index = 0;              ///< of the entry among the result's controllers
     std::optional<JsonLocation> today;  ///< the baseline's entry, if there is one other than the entry
     std::string time, u, y;             ///< labels of the units; "" if not given, except for time

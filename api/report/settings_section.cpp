@@ -81,8 +81,11 @@ const char* own_form(const ReportInput& s) {
     return form == "npid" ? "Nonlinear (NPID)" : form == "parallel" ? "Parallel, as given" : "Ideal";
 }
 
+/// The product of the new settings: settings that were typed into one stay in it. A result of an older version names
+/// it only in the request.
 const product::Product* product_of(const ReportInput& s) {
-    return product::find(text_at(s.request.at("implement").at("product")));
+    const std::string own = text_at(s.entry.at("as_entered").at("product"));
+    return product::find(own.empty() ? text_at(s.request.at("implement").at("product")) : own);
 }
 
 Html typed(const JsonLocation& texts, const std::string& name) {
@@ -95,10 +98,12 @@ bool has_typed(const ReportInput& s) {
     return product_of(s) != nullptr && s.entry.at("as_entered").at("as_typed").value().is_object();
 }
 
-/// Today's settings by the names of the controller's own list, if they are known.
+/// Today's settings by the names of the controller's own list, if they are known in the same product.
 std::optional<JsonLocation> entered_today(const ReportInput& s) {
     if (!s.today || !s.today->at("as_entered").at("as_typed").exists()) return std::nullopt;
-    return s.today->at("as_entered");
+    const JsonLocation entered = s.today->at("as_entered");
+    if (text_at(entered.at("product")) != text_at(s.entry.at("as_entered").at("product"))) return std::nullopt;
+    return entered;
 }
 
 /// Today's settings next to the new ones, by the names of the controller's own list.
@@ -142,18 +147,24 @@ Html from_to(const JsonLocation& low, const JsonLocation& high) {
     return figure(low, kFull) + " to " + figure(high, kFull);
 }
 
+/// The member of the user's own controller: that of settings typed into it, else that of `implement`.
+JsonLocation device_member(const ReportInput& s, const char* name) {
+    const JsonLocation own = s.given.at(name);
+    return own.exists() ? own : s.request.at("implement").at(name);
+}
+
 /// Spans and sample time for which the typed values are valid, and the limits of u used in the computation.
 Html ranges_table(const ReportInput& s) {
-    const JsonLocation implement = s.request.at("implement"), actuator = s.request.at("evaluate").at("actuator");
+    const JsonLocation actuator = s.request.at("evaluate").at("actuator"),
+                       sample_time = device_member(s, "sample_time");
     std::vector<Row> rows;
     for (const auto& [label, name, unit] :
          {std::tuple{"Range of the measurement", "y_span", s.y}, std::tuple{"Range of the output", "u_span", s.u}}) {
-        const JsonLocation span = implement.at(name);
+        const JsonLocation span = device_member(s, name);
         if (span.value().is_array() && span.value().size() == 2)
             rows.push_back({with_unit(label, unit), from_to(span.at(std::size_t{0}), span.at(std::size_t{1}))});
     }
-    if (implement.at("sample_time").exists())
-        rows.push_back({with_unit("Sample time", s.time), figure(implement.at("sample_time"), kFull)});
+    if (sample_time.exists()) rows.push_back({with_unit("Sample time", s.time), figure(sample_time, kFull)});
     if (actuator.at("min").exists() && actuator.at("max").exists())
         rows.push_back(
             {with_unit("Limits of u, from the operating point", s.u), from_to(actuator.at("min"), actuator.at("max"))});

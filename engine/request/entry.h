@@ -49,9 +49,13 @@ struct PlacedPeak {
     bool exceeds(double limit) const;
 };
 
+/// The words in place of a method's id for settings that the request gives.
+inline constexpr const char *kGivenMethod = "given", *kBaselineMethod = "baseline";
+
 /// A controller with its evaluation, or the error in its place.
 struct TuningEntry {
-    std::string method;  ///< id; "baseline" for today's settings; empty for controllers that were sent
+    /// Id; one of the two above for settings of the request; empty for controllers that were sent to be evaluated.
+    std::string method;
     std::string title;
     std::string source;
     bool over_region = false;  ///< limits hold over the record's confidence region, not for its model alone
@@ -67,13 +71,17 @@ struct TuningEntry {
     std::optional<double> best_PI_load_IAE;  ///< of a robust PID: the load IAE of the robust PI within the same limits
     std::optional<DeviceEntry> on_device;    ///< if requested and possible
     std::optional<ReplayedEntry> replay;     ///< the recorded time with this controller
-    std::optional<Standing> standing;        ///< only for designs and the baseline
-    /// Only for designs: the longest sample time of a program with backward rules that keeps Ms within 5 %.
+    std::optional<Standing> standing;        ///< not for settings without a plant
+    /// Not for today's settings: the longest sample time of a program with backward rules that keeps Ms within 5 %.
     std::optional<Figure> longest_sample_time;
     std::optional<Controller> unjudged;    ///< the controller, if there is no plant to evaluate it on
     std::optional<Evaluation> evaluation;  ///< its list of warnings begins with those of the method
     std::optional<Error> error;
     std::vector<verdict::Finding> verdict;  ///< the most important finding first
+
+    bool is_baseline() const { return method == kBaselineMethod; }  ///< today's settings
+    /// No method made it, so that it has neither options nor limits of its own.
+    bool is_given() const { return method.empty() || method == kGivenMethod || is_baseline(); }
 
     /// The report of this type; null if there is none.
     template <class Report>

@@ -41,7 +41,7 @@ std::vector<int> by_load_IAE(const std::vector<TuningEntry>& entries) {
 
 }  // namespace
 
-Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std::vector<Controller>& controllers,
+Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std::vector<GivenController>& controllers,
                                         const EvaluateOptions& options,
                                         const std::optional<device::DeviceModel>& device, const verdict::Labels& labels,
                                         const RunControl& control, const IdentifiedModel* model,
@@ -61,16 +61,14 @@ Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std:
     for (std::size_t i = 0; i < controllers.size(); ++i) {
         if (control.stop.stop_requested()) return out_of_time(i);
         const double start = now();
-        auto evaluation = evaluate(subject, controllers[i], watched);
+        auto evaluation = evaluate(subject, controllers[i].law, watched);
         if (!evaluation && evaluation.error().kind == ErrorKind::cancelled) return out_of_time(i);
         if (!evaluation) return placed(evaluation.error(), i);
         TuningEntry& entry = result.controllers.emplace_back();
         if (tradeoffs)
-            entry.reports.push_back(std::make_shared<TradeoffReport>(tradeoffs->of(controllers[i], std::nullopt)));
+            entry.reports.push_back(std::make_shared<TradeoffReport>(tradeoffs->of(controllers[i].law, std::nullopt)));
         if (optima) entry.optimum_at_Ms = optima->compare_at_Ms(*evaluation, control);
-        if (device)
-            take_device_entry(device_entry_of(subject, *device, watched, *evaluation, control), *evaluation,
-                              entry.on_device);
+        entry.on_device = device_entry_of(subject, controllers[i], device, watched, *evaluation, control);
         if (model != nullptr) warn_of_band(*evaluation, model->excited_band);
         evaluation->compute_ms = now() - start;
         entry.evaluation = std::move(*evaluation);

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "engine/controller/pid.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/expected.h"
 #include "engine/identification/identify.h"
@@ -12,6 +11,7 @@
 #include "engine/plant/nonlinear/linearisation.h"
 #include "engine/progress.h"
 #include "engine/request/entry.h"
+#include "engine/request/given_controller.h"
 
 namespace tunewright {
 
@@ -30,7 +30,7 @@ struct EvaluationResult {
 /// Errors: those of evaluate(), `where` = "controllers/<index>/..."; timeout if it was stopped. `labels`: the units in
 /// verdicts. `device`: the user's own controller, on which each is evaluated as well. `model`: the identified model
 /// that `subject` is made of; null for a given plant. `given_steps`: the steps of `options` that the user set.
-Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std::vector<Controller>& controllers,
+Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std::vector<GivenController>& controllers,
                                         const EvaluateOptions& options,
                                         const std::optional<device::DeviceModel>& device, const verdict::Labels& labels,
                                         const RunControl& control, const IdentifiedModel* model = nullptr,

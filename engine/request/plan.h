@@ -36,7 +36,7 @@ struct PlannedRow {
     std::string title(const std::string& besides = "") const;
 };
 
-/// The rows in the request's order, "all" expanded. Errors: invalid_argument for an unknown method or an empty list.
+/// The rows in the request's order, "all" expanded. Error: invalid_argument for an unknown method.
 Expected<std::vector<PlannedRow>> plan_rows(const std::vector<MethodRequest>& requests);
 
 /// Every method's variants (method.h), in the registry's order. Each takes those of the `given` options that it has; a

@@ -41,10 +41,11 @@ std::string above(const TuningEntry& entry, const Figure& Ms, double limit) {
     return several ? "The loop is unstable on at least one of the plants." : "The loop has no Ms.";
 }
 
-std::optional<double> baseline_limit(const std::vector<TuningEntry>& entries) {
+// The limit on Ms of given settings: the loosest of the designs', if each has one.
+std::optional<double> given_limit(const std::vector<TuningEntry>& entries) {
     std::optional<double> loosest;
     for (const TuningEntry& entry : entries) {
-        if (!entry.evaluation || entry.method == "baseline") continue;
+        if (!entry.evaluation || entry.is_given()) continue;
         if (!entry.asked_Ms) return std::nullopt;
         loosest = std::max(*entry.asked_Ms, loosest.value_or(0));
     }
@@ -116,13 +117,13 @@ RankingTerms ranking_terms(const EvaluateOptions& options, bool over_time) {
 }
 
 std::vector<int> ranked(std::vector<TuningEntry>& entries, const RankingTerms& terms) {
-    const auto of_baseline = baseline_limit(entries);
+    const auto of_given = given_limit(entries);
     std::vector<int> order;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         TuningEntry& entry = entries[i];
         if (!entry.evaluation) continue;
         order.push_back(static_cast<int>(i));
-        entry.standing = standing_of(entry, entry.method == "baseline" ? of_baseline : entry.asked_Ms, terms);
+        entry.standing = standing_of(entry, entry.is_given() ? of_given : entry.asked_Ms, terms);
         const auto optimum = optimum_for(entry, entries);
         // Its own load IAE for a nonlinear plant too: the figures of the linearisation would hide its behaviour.
         const auto& IAE = entry.evaluation->performance.load.IAE;

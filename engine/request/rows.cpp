@@ -11,6 +11,8 @@ namespace {
 
 bool in_plant(const Error& error) { return error.where == "plant" || error.where.starts_with("plant/"); }
 
+constexpr const char* kGivenSource = "the settings given in the request";
+
 double now_of(const RunControl& control) { return control.now_ms ? control.now_ms() : 0; }
 
 }  // namespace
@@ -107,26 +109,10 @@ void Rows::add_device_entry(TuningEntry& entry, std::optional<device::Fitted> fi
                       ideal, entry.on_device);
 }
 
-// Given settings are evaluated as given, whatever product the other entries are converted to.
-void Rows::add_baseline_on_device(TuningEntry& entry, const RunControl& control) const {
-    if (!request_.baseline_settings || !entry.evaluation) return add_device_entry(entry, std::nullopt, control);
-    const auto& [device, settings] = *request_.baseline_settings;
-    auto fitted = device::fit(device, settings);
-    Evaluation& ideal = *entry.evaluation;
-    take_device_entry(fitted ? judge_device(subject_, device, std::move(*fitted), request_.evaluate, ideal)
-                             : Expected<DeviceEntry>(fitted.error()),
-                      ideal, entry.on_device);
-}
-
-// Adds the figures and findings that only designs have, not given controllers.
-void Rows::add_to_design(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
-                         const RunControl& control, TuningEntry& entry) const {
+// Adds the figures and findings that today's settings do not have.
+void Rows::add_to_design(const RunControl& control, TuningEntry& entry) const {
     entry.longest_sample_time = longest_sample_time_of(subject_, *entry.evaluation, control.stop);
     warn_of_region(*entry.evaluation, entry.Ms_limit, model_ != nullptr);
-    if (model_ != nullptr) warn_of_band(*entry.evaluation, model_->excited_band);
-    if (problem && !planned.of_all && !request_.device && entry.method == "robust" &&
-        entry.options.text("controller") == "PID")
-        entry.best_PI_load_IAE = best_PI_load_IAE(*problem, entry.options, request_.evaluate, control);
 }
 
 TuningEntry Rows::entry(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
@@ -155,7 +141,11 @@ TuningEntry Rows::entry(const PlannedRow& planned, const std::optional<TuningPro
     add_reports(entry, tuned->report);
     add_device_entry(entry, std::move(fitted), control);
     if (entry.evaluation) {
-        add_to_design(planned, problem, control, entry);
+        add_to_design(control, entry);
+        if (model_ != nullptr) warn_of_band(*entry.evaluation, model_->excited_band);
+        if (problem && !planned.of_all && !request_.device && entry.method == "robust" &&
+            entry.options.text("controller") == "PID")
+            entry.best_PI_load_IAE = best_PI_load_IAE(*problem, entry.options, request_.evaluate, control);
         entry.evaluation->compute_ms = now_of(control) - started;
     }
     if (entry.error && entry.error->where.starts_with("controller")) entry.error->where.clear();
@@ -186,22 +176,39 @@ MadeRow Rows::of(const PlannedRow& planned, const RunControl& control) {
     return made;
 }
 
+// `where`: its place in the request.
+void Rows::judge_given(const GivenController& given, const std::string& where, bool as_design,
+                       const RunControl& control, TuningEntry& entry) {
+    const double started = now_of(control);
+    evaluate_into(entry, given.law, {});
+    add_reports(entry, nullptr);
+    if (entry.evaluation) {
+        entry.on_device =
+            device_entry_of(subject_, given, request_.device, request_.evaluate, *entry.evaluation, control);
+        if (as_design) add_to_design(control, entry);
+        if (model_ != nullptr) warn_of_band(*entry.evaluation, model_->excited_band);
+        entry.evaluation->compute_ms = now_of(control) - started;
+    }
+    if (entry.error && entry.error->where.starts_with("controller"))
+        entry.error->where.replace(0, std::string("controller").size(), where);
+}
+
+TuningEntry Rows::given(std::size_t index, const RunControl& control) {
+    TuningEntry entry;
+    entry.method = kGivenMethod;
+    entry.title = "Settings by hand";
+    if (request_.controllers.size() > 1) entry.title += " " + std::to_string(index + 1);
+    entry.source = kGivenSource;
+    judge_given(request_.controllers[index], "controllers/" + std::to_string(index), true, control, entry);
+    return entry;
+}
+
 TuningEntry Rows::baseline(const RunControl& control) {
     TuningEntry entry;
-    entry.method = "baseline";
+    entry.method = kBaselineMethod;
     entry.title = "Baseline";
-    entry.source = "the settings given in the request";
-    const double started = now_of(control);
-    Controller given = *request_.baseline;
-    if (auto* pid = std::get_if<IdealPid>(&given); pid != nullptr && request_.baseline_settings)
-        *pid = device::continuous(*pid);
-    evaluate_into(entry, given, {});
-    add_reports(entry, nullptr);
-    add_baseline_on_device(entry, control);
-    if (entry.evaluation && model_ != nullptr) warn_of_band(*entry.evaluation, model_->excited_band);
-    if (entry.evaluation) entry.evaluation->compute_ms = now_of(control) - started;
-    if (entry.error && entry.error->where.starts_with("controller"))
-        entry.error->where.replace(0, std::string("controller").size(), "baseline");
+    entry.source = kGivenSource;
+    judge_given(*request_.baseline, "baseline", false, control, entry);
     return entry;
 }
 

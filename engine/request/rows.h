@@ -38,6 +38,8 @@ public:
          const IdentifiedModel* model);
 
     MadeRow of(const PlannedRow& planned, const RunControl& control);
+    /// The entry of the request's given controller with this index.
+    TuningEntry given(std::size_t index, const RunControl& control);
     /// The entry of today's settings; the request must have them.
     TuningEntry baseline(const RunControl& control);
 
@@ -59,9 +61,9 @@ private:
     void evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings);
     void add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own);
     void add_device_entry(TuningEntry& entry, std::optional<device::Fitted> fitted, const RunControl& control) const;
-    void add_baseline_on_device(TuningEntry& entry, const RunControl& control) const;
-    void add_to_design(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
-                       const RunControl& control, TuningEntry& entry) const;
+    void judge_given(const GivenController& given, const std::string& where, bool as_design, const RunControl& control,
+                     TuningEntry& entry);
+    void add_to_design(const RunControl& control, TuningEntry& entry) const;
 
     const TuningRequest& request_;
     const AnalysedPlant& subject_;

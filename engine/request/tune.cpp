@@ -40,6 +40,7 @@ private:
     void state_problem();
     bool repeats(const TuningEntry& entry) const;
     bool tune_rows(const std::vector<PlannedRow>& planned, double from, double to);
+    void judge_given();
     bool wants_optima() const;
     void compare_with_optima(double from);
     void replay_record();
@@ -197,6 +198,18 @@ bool TuningRun::tune_rows(const std::vector<PlannedRow>& planned, double from, d
     return whole;
 }
 
+// Adds the entries of the controllers that the request gives.
+void TuningRun::judge_given() {
+    for (std::size_t index = 0; index < request_.controllers.size(); ++index) {
+        if (stopped()) {
+            result_.partial = true;
+            return;
+        }
+        result_.controllers.push_back(rows_->given(index, control_));
+        keep_best(result_.controllers.back());
+    }
+}
+
 // Fills the column "distance from the optimum at the same Ms".
 void TuningRun::compare_with_optima(double from) {
     RobustOptima optima(*problem_, on_linearisation(*subject_, request_.evaluate));
@@ -226,14 +239,14 @@ void TuningRun::replay_record() {
 
 // Optima are needed if several designs are ranked, because they are ranked by their distance from them.
 bool TuningRun::wants_optima() const {
-    const bool several = request_.tune.size() > 1 || request_.tune.front().of_all();
+    const bool several = request_.tune.size() > 1 || (!request_.tune.empty() && request_.tune.front().of_all());
     return problem_ && request_.evaluate.optimum_at_Ms.value_or(several);
 }
 
 Expected<TuningResult> TuningRun::result() {
     auto planned = plan_rows(request_.tune);
     if (!planned) return planned.error();
-    const std::size_t entries = planned->size() + request_.baseline.has_value();
+    const std::size_t entries = planned->size() + request_.controllers.size() + request_.baseline.has_value();
     if (const auto error = refuse_traces(request_.evaluate, entries)) return *error;
     if (const auto error = find_plant()) return *error;
     state_problem();
@@ -244,6 +257,7 @@ Expected<TuningResult> TuningRun::result() {
     const double start = result_.model ? kIdentifyShare : 0;
     const double tuned = wants_optima() ? start + (1 - start) * kRowsShare : 1;
     if (!tune_rows(*planned, start, tuned)) result_.partial = true;
+    judge_given();
     const bool found =
         std::ranges::any_of(result_.controllers, [](const TuningEntry& e) { return e.evaluation.has_value(); });
     if (!found) return result_.partial ? cancelled() : all_failed(result_.controllers);
@@ -286,6 +300,8 @@ Expected<TuningResult> tune(const TuningRequest& request, const RunControl& cont
                      given > 1 ? "The request gives more than one of plant, record, model and ultimate; give exactly "
                                  "one."
                                : "The request gives none of plant, record, model and ultimate; give exactly one."};
+    if (request.tune.empty() && request.controllers.empty())
+        return Error{ErrorKind::invalid_argument, "tune", "tune is empty; give at least one method, such as robust."};
     if (request.ultimate) return tune_on_ultimate(request);
     return TuningRun(request, control).result();
 }

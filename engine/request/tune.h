@@ -12,6 +12,7 @@
 #include "engine/plant/nonlinear/linearisation.h"
 #include "engine/progress.h"
 #include "engine/request/entry.h"
+#include "engine/request/given_controller.h"
 #include "engine/request/plan.h"
 
 namespace tunewright {
@@ -41,16 +42,11 @@ struct TuningRequest {
     std::optional<IdentifiedModel> model;  ///< a model that an earlier request identified from a record
     std::optional<UltimateTest> ultimate;
     IdentifyOptions identify;
-    std::vector<MethodRequest> tune = {MethodRequest{}};
-    std::optional<Controller> baseline;
+    std::vector<MethodRequest> tune = {MethodRequest{}};  ///< may be empty if there are `controllers`
+    std::vector<GivenController> controllers;             ///< of the user's choice, judged like designs
+    std::optional<GivenController> baseline;              ///< today's settings
     EvaluateOptions evaluate;
     verdict::GivenSteps given_steps;  ///< the steps of `evaluate` that the user set
-    struct TypedSettings {
-        device::DeviceModel device;
-        product::Settings settings;
-    };
-    std::optional<TypedSettings>
-        baseline_settings;  ///< settings in the user's product; `baseline` is the equivalent ideal controller
     std::optional<device::DeviceModel>
         device;  ///< the user's own controller, for which entries are converted and evaluated
     IdentifiedRegion identified_region = IdentifiedRegion::where_needed;

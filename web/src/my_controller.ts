@@ -1,5 +1,5 @@
 // The user's own controller: its product, spans and sample time. The browser stores it for later designs.
-import type { Implement, Need, ProductSummary, SettingValue, Span, TypedBaseline } from "./api/types.ts";
+import type { Implement, Need, ProductSummary, SettingValue, Span, TypedSettings } from "./api/types.ts";
 import type { UnitNames } from "./words/numbers.ts";
 import { productTitle } from "./words/products.ts";
 
@@ -91,11 +91,11 @@ export function named(mine: MyController | null, products: readonly ProductSumma
   return same ? mine : { ...mine, name, needs: product.needs as Need[] };
 }
 
-/** Today's settings in it: a baseline has spans and sample time like `implement`. */
-export function typedBaseline(
+/** Settings in it, as a request gives them: with spans and sample time like `implement`. */
+export function typedInto(
   { product, y_span, u_span, sample_time }: Pick<MyController, "product" | "y_span" | "u_span" | "sample_time">,
   settings: Record<string, SettingValue>,
-): TypedBaseline {
+): TypedSettings {
   return {
     product,
     settings,

@@ -8,8 +8,6 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kLongestId = 80;
-
 // The rules of the program are not allowed with a product.
 void check_rules(const Json& value, GivenDevice& given, Reader& reader) {
     check_span("y_span", given.y_span, reader);
@@ -33,7 +31,7 @@ const Description<GivenDevice>& implement_contract() {
             "Implement",
             "The implemented controller: a product with the spans of its signals, or a sampled program of the ideal "
             "form. Entries are converted to it and evaluated on it; the method robust designs for it.");
-        d.field("product", &G::product, maybe(text(kLongestId)), "Id of a product of GET /v1/controllers.")
+        d.field("product", &G::product, maybe(text(kMaxProductIdLength)), "Id of a product of GET /v1/controllers.")
             .field("y_span", &G::y_span, maybe(numbers(2, 2)), "Low and high end of the measurement's range.",
                    {.unit = "y"})
             .field("u_span", &G::u_span, maybe(numbers(2, 2)), "Low and high end of the output's range.", {.unit = "u"})
@@ -125,37 +123,6 @@ void check_needs(const device::DeviceModel& device, Reader& reader) {
     const auto any = product::to_settings(*device.product, IdealPid{.Kp = 1, .Ti = 10}, device.context, true);
     if (!any && any.error().kind == ErrorKind::invalid_argument)
         reader.fault_at(any.error().where, any.error().message);
-}
-
-GivenDevice GivenBaseline::device(const std::optional<GivenDevice>& others) const {
-    GivenDevice on_device;
-    on_device.product = product;
-    const GivenDevice other = others.value_or(GivenDevice{});
-    on_device.y_span = y_span ? y_span : other.y_span;
-    on_device.u_span = u_span ? u_span : other.u_span;
-    on_device.sample_time = sample_time ? sample_time : other.sample_time;
-    return on_device;
-}
-
-const Description<GivenBaseline>& baseline_settings_contract() {
-    static const auto description = [] {
-        using G = GivenBaseline;
-        Description<G> d("BaselineSettings", "Today's settings as typed into a product.");
-        d.field("product", &G::product, text(kLongestId), "Id of the product.", {.required = true})
-            .field("settings", &G::settings, settings_codec(), "Its parameters by name, as typed.", {.required = true})
-            .field("y_span", &G::y_span, maybe(numbers(2, 2)),
-                   "Low and high end of the measurement's range; default: those of implement.", {.unit = "y"})
-            .field("u_span", &G::u_span, maybe(numbers(2, 2)),
-                   "Low and high end of the output's range; default: those of implement.", {.unit = "u"})
-            .field("sample_time", &G::sample_time, maybe(number({.exclusive_minimum = 0})),
-                   "Period of the controller; default: that of implement.", {.unit = "time"})
-            .check([](const Json&, G& given, Reader& reader) {
-                check_span("y_span", given.y_span, reader);
-                check_span("u_span", given.u_span, reader);
-            });
-        return d;
-    }();
-    return description;
 }
 
 namespace {

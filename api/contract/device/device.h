@@ -11,6 +11,8 @@
 
 namespace tunewright::api {
 
+inline constexpr std::size_t kMaxProductIdLength = 80;
+
 /// The device as sent.
 struct GivenDevice {
     std::optional<std::string> product;
@@ -25,19 +27,6 @@ struct GivenDevice {
 };
 
 const Description<GivenDevice>& implement_contract();
-
-/// Today's settings as typed into a product.
-struct GivenBaseline {
-    std::string product;
-    product::Settings settings;
-    std::optional<std::vector<double>> y_span, u_span;
-    std::optional<double> sample_time;
-
-    /// The device that holds these settings; spans and sample time that are not given are those of `others`.
-    GivenDevice device(const std::optional<GivenDevice>& others) const;
-};
-
-const Description<GivenBaseline>& baseline_settings_contract();
 
 /// Reports at the reader's place if the product needs a span or a sample time that is not given.
 void check_needs(const device::DeviceModel& device, Reader& reader);

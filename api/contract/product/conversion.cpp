@@ -29,55 +29,38 @@ void add_context(Description<Request>& d) {
         .check([](const Json& json, Request& request, Reader& reader) { set_context(json, request, reader); });
 }
 
-Json notes_schema(SchemaBook&) {
-    return {{"type", "array"},
-            {"items",
-             {{"type", "object"},
-              {"properties",
-               {{"code", {{"type", "string"}, {"description", "Code for programs, kebab-case."}}},
-                {"detail", {{"type", "string"}, {"description", "A sentence with the figures."}}},
-                {"deviation",
-                 {{"type", "boolean"},
-                  {"description",
-                   "true: it names a part of the design that the product cannot implement, or something to do in "
-                   "addition. false: it says how the settings were computed."}}}}},
-              {"required", {"code", "detail", "deviation"}},
-              {"additionalProperties", false}}}};
+const Description<product::Note>& note_contract() {
+    static const auto contract = [] {
+        using N = product::Note;
+        Description<N> d("SettingsNote", "A remark about settings of a product.");
+        d.field("code", &N::code, words(), "Code for programs, kebab-case.")
+            .field("detail", &N::detail, words(), "A sentence with the figures.")
+            .field(
+                "deviation", {}, [](const N& note, Writer& out) { out.boolean(product::tells_deviation(note)); },
+                boolean().schema,
+                "true: a part of the design that the product cannot do, or something to be done beside it. false: how "
+                "the settings were computed.");
+        return d;
+    }();
+    return contract;
 }
 
-void write_notes(const std::vector<product::Note>& notes, Writer& out) {
-    out.begin_array();
-    for (const product::Note& note : notes) {
-        out.begin_object();
-        out.key("code").text(note.code);
-        out.key("detail").text(note.detail);
-        out.key("deviation").boolean(product::tells_deviation(note));
-        out.end_object();
-    }
-    out.end_array();
+Codec<std::vector<product::Note>> notes() { return list_of(answer(note_contract())); }
+
+const Description<product::FilledSnippet>& snippet_contract() {
+    static const auto contract = [] {
+        using S = product::FilledSnippet;
+        Description<S> d("Snippet", "Text to paste into a program or file.");
+        d.field(
+             "name", {}, [](const S& one, Writer& out) { out.text(one.name); }, words().schema,
+             "Language or file, and the place in it.")
+            .field("text", &S::text, words(), "Lines to paste.");
+        return d;
+    }();
+    return contract;
 }
 
-Json snippets_schema(SchemaBook&) {
-    return {{"type", "array"},
-            {"items",
-             {{"type", "object"},
-              {"properties",
-               {{"name", {{"type", "string"}, {"description", "Language or file, and the place in it."}}},
-                {"text", {{"type", "string"}, {"description", "Lines to paste."}}}}},
-              {"required", {"name", "text"}},
-              {"additionalProperties", false}}}};
-}
-
-void write_snippets(const SettingsAnswer& answer, Writer& out) {
-    out.begin_array();
-    for (const auto& snippet : product::filled_snippets(*answer.product, answer.typed, answer.context)) {
-        out.begin_object();
-        out.key("name").text(snippet.name);
-        out.key("text").text(snippet.text);
-        out.end_object();
-    }
-    out.end_array();
-}
+Codec<std::vector<product::FilledSnippet>> snippets() { return list_of(answer(snippet_contract())); }
 
 Json texts_by_name(SchemaBook&) { return {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}; }
 
@@ -112,7 +95,10 @@ const Description<SettingsAnswer>& settings_answer_contract() {
     static const auto contract = [] {
         using Answer = SettingsAnswer;
         Description<Answer> d("SettingsAnswer", "The settings to type, and the behaviour of the product with them.");
-        d.field("settings", &Answer::settings, only_answered(settings_codec()), "In full precision.")
+        d.field(
+             "product", {}, [](const Answer& a, Writer& out) { out.text(a.product->id); }, words().schema,
+             "Id of the product.")
+            .field("settings", &Answer::settings, only_answered(settings_codec()), "In full precision.")
             .field(
                 "units", {},
                 [](const Answer& a, Writer& out) {
@@ -134,18 +120,22 @@ const Description<SettingsAnswer>& settings_answer_contract() {
                     out.end_object();
                 },
                 texts_by_name, "As typed, in the product's resolution.")
-            .field("snippets", {}, write_snippets, snippets_schema,
-                   "Text to paste into the user's program or file, with the settings as typed. Left out if the product "
-                   "is not set by text.",
-                   {}, [](const Answer& a) { return a.product->snippets.empty(); })
+            .field(
+                "snippets", {},
+                [](const Answer& a, Writer& out) {
+                    snippets().write(product::filled_snippets(*a.product, a.typed, a.context), out);
+                },
+                snippets().schema,
+                "Text to paste into the user's program or file, with the settings as typed. Left out if the product "
+                "is not set by text.",
+                {}, [](const Answer& a) { return a.product->snippets.empty(); })
             .field(
                 "realised", {},
                 [](const Answer& a, Writer& out) { controller_contract().write(Controller(a.realised), out); },
                 controller_schema,
                 "The controller that the product then represents, with weights and filter; after rounding.")
-            .field(
-                "notes", {}, [](const Answer& a, Writer& out) { write_notes(a.notes, out); }, notes_schema,
-                "Deviations from the controller, and facts that are not verified.")
+            .field("notes", &Answer::notes, notes(),
+                   "Deviations from the controller, and facts that are not verified.")
             .field(
                 "standard_errors", &Answer::standard_errors,
                 unless<std::map<std::string, double>>(numbers_by_name("The parameter's name."),
@@ -230,7 +220,7 @@ const Description<ScheduleSettingsAnswer>& schedule_settings_answer_contract() {
              },
              "Ascending in `at`.")
             .field(
-                "notes", {}, [](const Answer& a, Writer& out) { write_notes(a.schedule.notes, out); }, notes_schema,
+                "notes", {}, [](const Answer& a, Writer& out) { notes().write(a.schedule.notes, out); }, notes().schema,
                 "The product's interpolation between the rows, and notes that apply to all of them.");
         return d;
     }();
@@ -261,9 +251,7 @@ const Description<TwinAnswer>& twin_answer_contract() {
                  controller_contract().write(Controller(answer.controller), out);
              },
              controller_schema, "The equivalent controller in the ideal form.")
-            .field(
-                "notes", {}, [](const TwinAnswer& answer, Writer& out) { write_notes(answer.notes, out); },
-                notes_schema, "Assumptions.");
+            .field("notes", &TwinAnswer::notes, notes(), "Assumptions.");
         return d;
     }();
     return contract;

@@ -161,6 +161,8 @@ void add_operating_point(Description<Answer>& d, Callable<const OperatingPoint*(
             "For a nonlinear plant: the linearisation there, which methods and robustness use.", {}, none);
 }
 
+constexpr const char* kEntries =
+    "One entry per method and then one per given controller, in the order of the request; the baseline last.";
 constexpr const char* kReplay =
     "The record of a loop in automatic as it was; the `replay` of each entry has the same time with its controller.";
 constexpr const char* kEntryReplay =
@@ -179,7 +181,7 @@ void add_method_fields(Description<TuningEntry>& d) {
     const auto word = [](SchemaBook&) { return Json{{"type", "string"}}; };
     d.field(
          "method", {}, [](const TuningEntry& entry, Writer& out) { out.text(entry.method); }, word,
-         "Id of the method; baseline for today's settings.", {}, no_method)
+         "Id of the method; given for `controllers` of the request, baseline for today's settings.", {}, no_method)
         .field(
             "title", {}, [](const TuningEntry& entry, Writer& out) { out.text(entry.title); }, word, "Its name.", {},
             no_method)
@@ -193,7 +195,7 @@ void add_method_fields(Description<TuningEntry>& d) {
                 return Json{{"type", "object"}, {"additionalProperties", true}};
             },
             "Options, with defaults for those that were not given.", {},
-            [](const TuningEntry& entry) { return entry.method.empty() || entry.method == "baseline"; });
+            [](const TuningEntry& entry) { return entry.is_given(); });
 }
 
 void add_device_entry(Description<TuningEntry>& d) {
@@ -207,7 +209,7 @@ void add_device_entry(Description<TuningEntry>& d) {
              return Json{{"type", {"number", "null"}}};
          },
          "The longest sample time of a program with backward rules that keeps Ms within 5 % of the continuous loop's; "
-         "null: none was found. Only for designs.",
+         "null: none was found. Not for today's settings.",
          {.unit = "time"}, [](const TuningEntry& entry) { return !entry.longest_sample_time; })
         .field(
             "as_entered", {},
@@ -363,8 +365,7 @@ const Description<ResultAnswer>& result_contract() {
              [](const ResultAnswer& a, Writer& out) {
                  list_of(answer(entry_contract())).write(a.result.controllers, out);
              },
-             list_of(answer(entry_contract())).schema,
-             "One entry per method, in the order of the request; the baseline last.")
+             list_of(answer(entry_contract())).schema, kEntries)
             .field(
                 "verdict", {}, [](const ResultAnswer& a, Writer& out) { findings().write(a.result.verdict, out); },
                 findings().schema, kWhichToTake);
@@ -393,8 +394,7 @@ const Description<TuningResult>& design_answer_contract() {
                 "Model of a record; left out if the request contains it.")
             .field("replay", &R::replay, maybe(answer(replayed_record_contract())), kReplay);
         add_operating_point<R>(d, [](const R& a) { return pointer(a.operating_point); });
-        d.field("controllers", &R::controllers, list_of(answer(entry_contract())),
-                "One entry per method, in the order of the request; the baseline last.")
+        d.field("controllers", &R::controllers, list_of(answer(entry_contract())), kEntries)
             .field("verdict", &R::verdict, findings(), kWhichToTake);
         add_ranking<R>(d, [](const R& a) -> const TuningResult& { return a; });
         return d;

@@ -29,7 +29,7 @@ struct VerdictInput {
     const Robustness& robustness() const;
     const Performance& performance() const;
     bool on_device() const { return entry.on_device.has_value(); }
-    bool is_today() const { return entry.method == "baseline"; }
+    bool is_today() const { return entry.is_baseline(); }
 
     bool has_integral() const;
     bool warned_of(const std::string& code) const;

@@ -10,11 +10,9 @@
 namespace tunewright::verdict {
 namespace {
 
-bool is_baseline(const TuningEntry& entry) { return entry.method == "baseline"; }
-
 const TuningEntry* todays(const std::vector<TuningEntry>& entries) {
     for (const TuningEntry& entry : entries)
-        if (is_baseline(entry) && entry.evaluation) return &entry;
+        if (entry.is_baseline() && entry.evaluation) return &entry;
     return nullptr;
 }
 
@@ -75,7 +73,7 @@ bool has(const std::vector<Finding>& findings, const char* code) {
 double asked_limit(const std::vector<TuningEntry>& entries) {
     double loosest = 0;
     for (const TuningEntry& entry : entries)
-        if (entry.evaluation && !is_baseline(entry)) loosest = std::max(loosest, entry.asked_Ms.value_or(0));
+        if (entry.evaluation && !entry.is_baseline()) loosest = std::max(loosest, entry.asked_Ms.value_or(0));
     return loosest;
 }
 
@@ -103,7 +101,7 @@ int choice(const std::vector<TuningEntry>& entries, const std::vector<int>& rank
     std::vector<Candidate> left;
     for (const int index : ranking) {
         const TuningEntry& entry = entries[static_cast<std::size_t>(index)];
-        if (is_baseline(entry) || !entry.evaluation || level_of(entry) == Level::bad) continue;
+        if (entry.is_baseline() || !entry.evaluation || level_of(entry) == Level::bad) continue;
         left.push_back(candidate(entry, index, asked_limit(entries)));
     }
     if (left.empty()) return -1;
@@ -119,9 +117,9 @@ std::string name_of(const TuningEntry& entry, int index) {
 }
 
 Finding none_to_take(const std::vector<TuningEntry>& entries, const std::vector<int>& ranking) {
-    const auto designs = std::ranges::count_if(entries, [](const TuningEntry& e) { return !is_baseline(e); });
+    const auto designs = std::ranges::count_if(entries, [](const TuningEntry& e) { return !e.is_baseline(); });
     if (designs == 1 && !ranking.empty()) {
-        const auto own = std::ranges::find_if(entries, [](const TuningEntry& e) { return !is_baseline(e); });
+        const auto own = std::ranges::find_if(entries, [](const TuningEntry& e) { return !e.is_baseline(); });
         return FindingBuilder("none", Level::bad).say(own->verdict.front().text);
     }
     return FindingBuilder("none", Level::bad).say("None of these controllers should be used.");

@@ -1,7 +1,6 @@
-// Today's settings of a product: their loop, and their ideal form.
+// Settings typed into a product, today's or those of the user's choice: their loop, and their ideal form.
 #include <gtest/gtest.h>
 
-#include "engine/controller/product/to_controller.h"
 #include "tests/engine/request/expect_device.h"
 
 namespace tunewright {
@@ -36,11 +35,10 @@ Settings settings_of(const std::string& product, double Ts) {
 TuningRequest request_with_baseline(const std::string& product, const Settings& settings, double Ts) {
     TuningRequest request = request_of(kPlant, "simc");
     const device::DeviceModel device = device_of(product, kPlant, Ts);
-    std::vector<product::Note> notes;
-    const auto twin = product::to_controller(*device.product, settings, device.context, notes);
-    EXPECT_TRUE(twin) << product;
-    request.baseline = *twin;
-    request.baseline_settings = {device, settings};
+    const auto typed = typed_controller(device, settings);
+    EXPECT_TRUE(typed) << product;
+    request.baseline = *typed;
+    request.controllers = {*typed};
     return request;
 }
 
@@ -51,11 +49,15 @@ TEST_P(DeviceBaseline, IsJudgedAsTheProductsOwnProgramRunsIt) {
     for (const double Ts : {0.1, 0.5}) {
         const auto result = tune(request_with_baseline(GetParam(), settings_of(GetParam(), Ts), Ts), {});
         ASSERT_TRUE(result);
-        const TuningEntry& entry = result->controllers.back();
-        ASSERT_EQ(entry.method, "baseline");
-        ASSERT_TRUE(entry.on_device) << (entry.error ? entry.error->message : entry.evaluation->warnings.back().detail);
-        ASSERT_TRUE(std::isfinite(entry.on_device->loop.performance.load.IAE.value_or(INFINITY)));
-        expect_figures_of_own_program(*entry.on_device, GetParam(), kPlant);
+        ASSERT_EQ(result->controllers.size(), 3U);
+        for (const std::size_t index : {1U, 2U}) {
+            const TuningEntry& entry = result->controllers[index];
+            ASSERT_EQ(entry.method, index == 1 ? "given" : "baseline");
+            ASSERT_TRUE(entry.on_device) << (entry.error ? entry.error->message
+                                                         : entry.evaluation->warnings.back().detail);
+            ASSERT_TRUE(std::isfinite(entry.on_device->loop.performance.load.IAE.value_or(INFINITY)));
+            expect_figures_of_own_program(*entry.on_device, GetParam(), kPlant);
+        }
     }
 }
 

@@ -6,7 +6,7 @@ import { openDesign, PLANT, setting, shows } from "../design_page.mjs";
 import { accessibilityViolations, browserTests, overflow } from "../harness.mjs";
 import { germanTrend, heaterLog } from "../made_records.mjs";
 import { chooseProduct, person } from "../person.mjs";
-import { assertRequestIsShown, requestHandedOut, watchCalls } from "../shown_request.mjs";
+import { assertRequestIsShown, designOnScreen, requestHandedOut, watchCalls } from "../shown_request.mjs";
 
 const tests = browserTests();
 const { withPage, post } = tests;
@@ -75,11 +75,11 @@ test("other values typed in the product's rows are shown with their verdict, mar
     assert.equal(Number(await gain.inputValue()), 1.3);
     await page.getByText("robust, set by hand", { exact: true }).waitFor();
     const request = await requestHandedOut(page);
-    assert.equal(request.controllers[0].Kp, 0.65);
+    assert.equal(request.controllers[0].settings.GAIN, 1.3);
     assert.deepEqual(request.implement, DELTAV);
-    const { controllers } = await post("v1/evaluate", request);
-    const verdict = await page.locator(".verdict > p:not(.trouble)").innerText();
-    assert.ok(verdict.includes(controllers[0].verdict.at(-1).text.replaceAll("-", "−")) || verdict.includes(controllers[0].verdict.at(-1).text));
+    await page.getByRole("button", { name: "Type other values" }).click();
+    await assertRequestIsShown(page, post, "typed");
+    await page.getByRole("button", { name: "Type other values" }).click();
 
     await page.getByRole("textbox", { name: "RESET, new" }).fill("a while");
     await page.getByRole("textbox", { name: "RESET, new" }).press("Enter");
@@ -88,6 +88,52 @@ test("other values typed in the product's rows are shown with their verdict, mar
     await page.getByRole("button", { name: "Undo" }).click();
     await page.getByText("robust", { exact: true }).first().waitFor();
     await page.waitForURL(/design(\?entry=\d)?$/);
+  });
+});
+
+test("settings that are typed are kept as a job: report, change sheet and code have them, from today's", async () => {
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    const { id } = await openLoop(page);
+    await page.getByRole("button", { name: "Type other values" }).click();
+    for (const [name, text] of [["GAIN", "1.37"], ["RESET", "7.3"]]) {
+      const field = page.getByRole("textbox", { name: `${name}, new` });
+      await field.fill(text);
+      await field.press("Enter");
+      await settled();
+    }
+    await page.getByRole("button", { name: "Type other values" }).click();
+    const before = await designOnScreen(page);
+    await page.getByText(/Keep these settings to get their own\.$/).waitFor();
+    await page.getByRole("button", { name: "Keep these settings" }).click();
+    await page.waitForURL((address) => !address.hash.includes(id) && /entry=2$/.test(address.hash));
+    await settled();
+    const kept = await designOnScreen(page);
+    assert.deepEqual([kept.settings, kept.verdict[0]], [before.settings, before.verdict[0]]);
+    assert.deepEqual(await accessibilityViolations(page), []);
+    const job = await tests.jobOf(page);
+    assert.deepEqual(job.result.controllers.map(({ method }) => method), ["robust", "simc", "given", "baseline"]);
+    assert.deepEqual([job.request.controllers[0].settings.GAIN, job.request.controllers[0].settings.RESET], [1.37, 7.3]);
+    const textOf = async (name) => {
+      const address = await page.getByRole("link", { name, exact: true }).getAttribute("href");
+      return (await page.request.get(new URL(address, page.url()).href)).text();
+    };
+    for (const name of ["Report", "Change sheet"]) {
+      const html = await textOf(name);
+      for (const [entry, gain, reset] of [[2, "1.37", "7.3"], [3, "1", "10"]])
+        for (const [setting, typed] of [["GAIN", gain], ["RESET", reset]])
+          assert.match(html, new RegExp(`controllers/${entry}/as_entered/as_typed/${setting}">${typed}(\\.)?0*<`), `${name}: ${setting}`);
+    }
+    const code = await (await page.request.get(`${tests.service.base}/v1/jobs/${job.id}/controllers/2/code?language=python`)).text();
+    assert.match(code, /\b0\.685\b/, "1.37 percent of 100 over 200");
+    assert.match(code, /\b7\.3\b/);
+    // Other values typed now replace them.
+    await page.getByRole("button", { name: "Type other values" }).click();
+    await page.getByRole("textbox", { name: "GAIN, new" }).fill("1.2");
+    await page.getByRole("textbox", { name: "GAIN, new" }).press("Enter");
+    await settled();
+    const request = await requestHandedOut(page);
+    assert.deepEqual(request.controllers.map(({ settings }) => settings.GAIN), [1.2]);
   });
 });
 

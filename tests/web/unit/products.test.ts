@@ -13,7 +13,7 @@ import {
   named,
   readMine,
   sameImplement,
-  typedBaseline,
+  typedInto,
 } from "../../../web/src/my_controller.ts";
 import type { MyController } from "../../../web/src/my_controller.ts";
 import {
@@ -348,7 +348,7 @@ test("a request is made for another product, keeps what belongs to its own, and 
 });
 
 test("today's settings carry the ranges that they were typed for", () => {
-  assert.deepEqual(typedBaseline(implementOf(MINE)!, { Kp: 1 }), {
+  assert.deepEqual(typedInto(implementOf(MINE)!, { Kp: 1 }), {
     product: "acme",
     settings: { Kp: 1 },
     y_span: [0, 200],

@@ -172,7 +172,8 @@ export type components = {
       ultimate?: components["schemas"]["UltimateTest"];
       identify?: components["schemas"]["Identify"];
       tune?: components["schemas"]["Method"][] | "all";
-      baseline?: components["schemas"]["Controller"] | components["schemas"]["BaselineSettings"] | "from-record";
+      controllers?: (components["schemas"]["Controller"] | components["schemas"]["TypedSettings"])[];
+      baseline?: components["schemas"]["Controller"] | components["schemas"]["TypedSettings"] | "from-record";
       implement?: components["schemas"]["Implement"];
       evaluate?: components["schemas"]["Evaluate"];
       uncertainty?: "auto" | "none" | "identified";
@@ -296,7 +297,7 @@ export type components = {
       action: "reverse" | "direct";
       b_equivalent: number;
     };
-    BaselineSettings: {
+    TypedSettings: {
       product: string;
       settings: {
         [key: string]: number | string | boolean;
@@ -742,19 +743,22 @@ export type components = {
       as_typed: {
         [key: string]: string;
       };
-      snippets?: {
-        name: string;
-        text: string;
-      }[];
+      snippets?: components["schemas"]["Snippet"][];
       realised: components["schemas"]["Controller"];
-      notes: {
-        code: string;
-        detail: string;
-        deviation: boolean;
-      }[];
+      notes: components["schemas"]["SettingsNote"][];
       standard_errors?: {
         [key: string]: number | null;
       };
+      product: string;
+    };
+    Snippet: {
+      name: string;
+      text: string;
+    };
+    SettingsNote: {
+      code: string;
+      detail: string;
+      deviation: boolean;
     };
     Implemented: {
       sample_time: number | null;
@@ -1430,11 +1434,7 @@ export type components = {
     };
     ScheduleSettingsAnswer: {
       rows: components["schemas"]["SettingsRow"][];
-      notes: {
-        code: string;
-        detail: string;
-        deviation: boolean;
-      }[];
+      notes: components["schemas"]["SettingsNote"][];
     };
     SettingsRow: {
       at: number;
@@ -1476,7 +1476,7 @@ export type SetpointFilter = components['schemas']['SetpointFilter'];
 export type Filter = components['schemas']['Filter'];
 export type ParallelController = components['schemas']['ParallelController'];
 export type SeriesController = components['schemas']['SeriesController'];
-export type BaselineSettings = components['schemas']['BaselineSettings'];
+export type TypedSettings = components['schemas']['TypedSettings'];
 export type Implement = components['schemas']['Implement'];
 export type Evaluate = components['schemas']['Evaluate'];
 export type Actuator = components['schemas']['Actuator'];
@@ -1520,6 +1520,8 @@ export type Frequency = components['schemas']['Frequency'];
 export type Verification = components['schemas']['Verification'];
 export type IndexErrors = components['schemas']['IndexErrors'];
 export type SettingsAnswer = components['schemas']['SettingsAnswer'];
+export type Snippet = components['schemas']['Snippet'];
+export type SettingsNote = components['schemas']['SettingsNote'];
 export type Implemented = components['schemas']['Implemented'];
 export type Difference = components['schemas']['Difference'];
 export type CostSurface = components['schemas']['CostSurface'];

@@ -81,9 +81,10 @@ export type Plant = Contract.PlantModel & { L?: number };
 export type TuneEntry = Contract.Method;
 /** The user's own controller. */
 export type Implement = Pick<Contract.Implement, "product" | "y_span" | "u_span" | "sample_time"> & Record<string, unknown>;
-/** Today's settings as typed into a product. */
-export type TypedBaseline = Contract.BaselineSettings;
-export type Baseline = ({ form: string; product?: undefined } & Record<string, unknown>) | TypedBaseline;
+/** Settings as typed into a product. */
+export type TypedSettings = Contract.TypedSettings;
+/** A controller in a request: a law, or settings typed into a product. */
+export type GivenController = ({ form: string; product?: undefined } & Record<string, unknown>) | TypedSettings;
 
 /** A request as filled by the page's forms, or by files. */
 export interface TuningRequest extends Pick<Contract.TuningRequest, "name" | "units" | "record"> {
@@ -91,7 +92,8 @@ export interface TuningRequest extends Pick<Contract.TuningRequest, "name" | "un
   identify?: Record<string, unknown>;
   tune?: TuneEntry[] | string;
   /** "from-record": the service finds them in the record. */
-  baseline?: Baseline | "from-record";
+  controllers?: GivenController[];
+  baseline?: GivenController | "from-record";
   implement?: Implement;
   evaluate?: Partial<Contract.Evaluate> & Record<string, unknown>;
   [key: string]: unknown;

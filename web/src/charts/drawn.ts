@@ -11,9 +11,11 @@ export interface Drawn {
 
 export const MAX_DRAWN = 4;
 
-/** Short names of the entries: the method, numbered where it occurs twice; "today" for the baseline. */
+const GIVEN_NAMES: Record<string, string> = { baseline: "today", given: "by hand" };
+
+/** Short names of the entries: the method, numbered where it occurs twice. */
 export function entryNames(entries: Entry[]): string[] {
-  const base = entries.map((entry) => (entry.method === "baseline" ? "today" : entry.method.replaceAll("_", " ")));
+  const base = entries.map(({ method }) => GIVEN_NAMES[method] ?? method.replaceAll("_", " "));
   const distinguishing = base.map((name, index) => {
     if (base.filter((other) => other === name).length < 2) return name;
     const twins = entries.filter((_, at) => base[at] === name);

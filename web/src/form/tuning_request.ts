@@ -1,6 +1,6 @@
 // Tuning requests that the page makes from answers: for a candidate of Identify, for the same request with another
 // lambda for one of its entries, and for the same subject with every method.
-import type { Baseline, Candidate, Entry, IdentifyRequest, Implement, Method, Model, Plant, Result, TuneEntry, TuningRequest, TypedBaseline } from "../api/types.ts";
+import type { Candidate, Entry, GivenController, IdentifyRequest, Implement, Method, Model, Plant, Result, TuneEntry, TuningRequest, TypedSettings } from "../api/types.ts";
 
 /** The subject for a candidate that was chosen on Identify: its record if that leads to the same model again, else
     its plant. */
@@ -39,11 +39,11 @@ export function withImplement(request: TuningRequest, implement: Implement | nul
 }
 
 /** Today's settings as the request has them; undefined if it has none, or has them found in the record. */
-export const givenBaseline = ({ baseline }: TuningRequest): Baseline | undefined =>
+export const givenBaseline = ({ baseline }: TuningRequest): GivenController | undefined =>
   baseline === "from-record" ? undefined : baseline;
 
 /** The same request with today's settings. */
-export const withBaseline = (request: TuningRequest, baseline: TypedBaseline): TuningRequest => ({
+export const withBaseline = (request: TuningRequest, baseline: TypedSettings): TuningRequest => ({
   ...request,
   baseline,
 });
@@ -59,12 +59,15 @@ function rowsAsked(request: TuningRequest, result: Result): TuneEntry[] {
   return all ? everyMethod(result) : (request.tune as TuneEntry[]);
 }
 
-/** The row of the request for every entry; -1 for today's settings. */
+/** True for settings that the request gives: no method made them. */
+export const isGiven = ({ method }: Entry): boolean => method === "baseline" || method === "given";
+
+/** The row of the request for every entry; -1 for settings that it gives. */
 export function rowsOf(request: TuningRequest, result: Result): number[] {
   const asked = rowsAsked(request, result);
   let row = -1;
   return result.controllers.map((entry, index) => {
-    if (entry.method === "baseline") return -1;
+    if (isGiven(entry)) return -1;
     if (isSibling(entry, result.controllers[index - 1])) return row;
     // A job that was stopped early has no entries for some rows.
     const next = asked.findIndex((tune, at) => at > row && tune.method === entry.method);
@@ -73,10 +76,10 @@ export function rowsOf(request: TuningRequest, result: Result): number[] {
   });
 }
 
-/** The method and options of the entry with that index; null for today's settings. */
+/** The method and options of the entry with that index; null for settings that the request gives. */
 export function tuneEntryOf(request: TuningRequest, result: Result, index: number): TuneEntry | null {
   const entry = result.controllers[index];
-  if (!entry || entry.method === "baseline") return null;
+  if (!entry || isGiven(entry)) return null;
   return rowsAsked(request, result)[rowsOf(request, result)[index] ?? -1] ?? { method: entry.method };
 }
 
@@ -84,6 +87,21 @@ export function tuneEntryOf(request: TuningRequest, result: Result, index: numbe
 export function withTune(request: TuningRequest, result: Result, index: number, tune: TuneEntry): TuningRequest {
   const row = rowsOf(request, result)[index];
   return { ...request, tune: rowsAsked(request, result).map((entry, at) => (at === row ? tune : entry)) };
+}
+
+/** The same request with a given controller: in place of the entry's if it is one, else after the others. Returns the
+    index of its entry too. */
+export function withGiven(
+  request: TuningRequest,
+  { controllers }: Result,
+  index: number,
+  given: GivenController,
+): { request: TuningRequest; index: number } {
+  const before = controllers.filter((entry) => entry.method !== "baseline").length;
+  const at = controllers[index]?.method === "given" ? index : before;
+  const list = [...(request.controllers ?? [])];
+  list[at - before + list.length] = given;
+  return { request: { ...request, controllers: list }, index: at };
 }
 
 /** The same request with other options of a method; null: of the only one. */
@@ -105,7 +123,7 @@ export function withLambda(request: TuningRequest, result: Result, index: number
 /** "all" as an explicit list, each variant with its options. */
 const everyMethod = (result: Result): TuneEntry[] =>
   result.controllers
-    .filter((entry, index) => entry.method !== "baseline" && !isSibling(entry, result.controllers[index - 1]))
+    .filter((entry, index) => !isGiven(entry) && !isSibling(entry, result.controllers[index - 1]))
     .map((entry) => ({
       method: entry.method,
       ...Object.fromEntries(Object.entries(entry.options ?? {}).filter(([, value]) => value !== null)),

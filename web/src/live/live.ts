@@ -3,8 +3,8 @@ import { batch, computed, signal } from "@preact/signals-core";
 import type { ReadonlySignal } from "@preact/signals-core";
 import { ApiError } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
-import { designOf, entriesOf, withHeldPoints } from "../api/live.ts";
-import type { Controller, Entry } from "../api/types.ts";
+import { designOf, withHeldPoints } from "../api/live.ts";
+import type { Entry } from "../api/types.ts";
 import { ahead } from "./ahead.ts";
 import { samePoint, stepBack, stepForward, stepInPlace, stepTo } from "./point.ts";
 import type { Point, Steps } from "./point.ts";
@@ -15,8 +15,6 @@ import type { Shown, Modifiable } from "./shown.ts";
 export interface Proposal {
   from: Modifiable;
   point: Point;
-  /** Today's settings in the ideal form, if they could be converted. */
-  today: Controller | null;
 }
 
 /** The answer for a point, as shown. */
@@ -97,13 +95,13 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
   };
 
   async function work({ point: asked, held: coarse }: Question, abort: AbortSignal): Promise<Shown> {
-    const { from, today } = proposal.peek()!;
+    const { from } = proposal.peek()!;
     if (!asked.manual) {
       const answer = await designOf(questionOf(from, asked.tune!, coarse), abort);
       return designShown(from, asked.tune!, answer, coarse);
     }
-    const body = manualQuestion(from, asked, today)!;
-    return manualShown(from, asked, body, await entriesOf(coarse ? withHeldPoints(body) : body, abort));
+    const body = manualQuestion(from, asked);
+    return manualShown(from, asked, await designOf(coarse ? withHeldPoints(body) : body, abort));
   }
 
   /** A design that does not follow the slider is not requested ahead either. */

@@ -1,6 +1,6 @@
 // A modified design: the method's options, or settings by hand; its steps for undo and redo, and its form in the
 // address.
-import type { Controller, Method, TuneEntry } from "../api/types.ts";
+import type { Controller, Method, TuneEntry, TypedSettings } from "../api/types.ts";
 import { MANUAL, manualValue, isTied, withManual, withOption } from "./sliders.ts";
 import type { ManualName, SliderSpec } from "./sliders.ts";
 
@@ -9,6 +9,8 @@ export interface Point {
   tune: TuneEntry | null;
   /** Settings that were moved by hand; they deviate from the method's result. */
   manual: Controller | null;
+  /** The same as typed into a product; missing if they were not. */
+  typed?: TypedSettings | undefined;
 }
 
 export const samePoint = (a: Point, b: Point): boolean => JSON.stringify(a) === JSON.stringify(b);

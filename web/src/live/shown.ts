@@ -1,8 +1,9 @@
 // A modified design: one request with one member changed, and its result. No element of the page.
-import { callSubject, designBody, evaluateBody, withHeldPoints } from "../api/live.ts";
+import { settingsOf } from "../api/evaluate.ts";
+import { designBody, withHeldPoints } from "../api/live.ts";
 import type { DesignAnswer } from "../api/live.ts";
-import type { Controller, Entry, Result, TuneEntry, TuningRequest } from "../api/types.ts";
-import { rowsOf, withTune } from "../form/tuning_request.ts";
+import type { Entry, GivenController, Result, TuneEntry, TuningRequest } from "../api/types.ts";
+import { isGiven, rowsOf, withGiven, withImplement, withTune } from "../form/tuning_request.ts";
 import type { Point } from "./point.ts";
 
 /** A job's entry that is modified. */
@@ -13,9 +14,10 @@ export interface Modifiable {
 }
 
 export interface Shown {
-  /** The call for it: a job for a design, an evaluation for settings by hand. */
-  path: "v1/jobs" | "v1/evaluate";
-  request: unknown;
+  /** The request of a job for it. */
+  request: TuningRequest;
+  /** Index of the modified entry in the result of such a job. */
+  kept: number;
   result: Result;
   /** Index of the modified entry. */
   index: number;
@@ -37,7 +39,9 @@ const rowCount = (request: TuningRequest): number => (Array.isArray(request.tune
 /** The body for POST /v1/design; `held`: only the modified row, with few samples. */
 export function questionOf(from: Modifiable, tune: TuneEntry, held: boolean): Record<string, unknown> {
   const body = designBody(alteredBy(from, tune), from.result);
-  return held ? { ...withHeldPoints(body), tune: [tune] } : body;
+  if (!held) return body;
+  const { controllers: _given, ...others } = withHeldPoints(body);
+  return { ...others, tune: [tune] };
 }
 
 /** The entries of the job made by the same row of its request. */
@@ -62,7 +66,7 @@ function withoutComparison(result: Result): Result {
 function amongOthers(from: Modifiable, answer: DesignAnswer): Pick<Shown, "result" | "index" | "origin"> {
   const { result, index } = from;
   const mates = rowMates(from);
-  const made = answer.controllers.filter((entry) => entry.method !== "baseline");
+  const made = answer.controllers.filter((entry) => !isGiven(entry));
   const today = todaysOf(answer.controllers);
   const first = mates[0] ?? index;
   const before = result.controllers.slice(0, first);
@@ -86,10 +90,11 @@ function amongOthers(from: Modifiable, answer: DesignAnswer): Pick<Shown, "resul
 export function designShown(from: Modifiable, tune: TuneEntry, answer: DesignAnswer, held: boolean): Shown {
   const request = alteredBy(from, tune);
   const row = rowsOf(from.request, from.result)[from.index]!;
-  const single = rowCount(request) === 1;
-  const path = "v1/jobs";
-  if (single || held)
-    return { path, request, ...amongOthers(from, answer), cost: costOf(answer.controllers), whole: single };
+  const single = rowCount(request) === 1 && !request.controllers?.length;
+  if (single || held) {
+    const among = amongOthers(from, answer);
+    return { request, kept: among.index, ...among, cost: costOf(answer.controllers), whole: single };
+  }
   const { request_hash: _hash, ...kept } = from.result;
   const result: Result = { ...kept, ...answer };
   const rows = rowsOf(request, result);
@@ -102,31 +107,45 @@ export function designShown(from: Modifiable, tune: TuneEntry, answer: DesignAns
   const first = rows.indexOf(row);
   const made = result.controllers.filter((_, at) => rows[at] === row);
   const at = first + sameKind(from.result.controllers[from.index]!, made);
-  return { path, request, result, index: at, origin, cost: costOf(made), whole: true };
+  return { request, kept: at, result, index: at, origin, cost: costOf(made), whole: true };
 }
 
-/** The body for POST /v1/evaluate; null if there is no plant. The settings are compared with the limit on Ms of the
- * design from which they deviate. */
-export function manualQuestion(from: Modifiable, { tune, manual }: Point, today: Controller | null): Record<string, unknown> | null {
-  const subject = callSubject(from.request, from.result);
-  const Ms = tune?.["Ms"] ?? from.result.controllers[from.index]?.options?.["Ms"];
-  const evaluate = { ...from.request.evaluate, ...(typeof Ms === "number" ? { rank_limits: { Ms } } : {}) };
-  return subject && evaluateBody({ ...from.request, evaluate }, subject, [manual!, ...(today ? [today] : [])]);
+/** The settings by hand as the request gives them: as typed, or as a law. */
+const givenOf = ({ manual, typed }: Point): GivenController => typed ?? settingsOf(manual!);
+
+/** Settings that are typed into a product are for it, whatever the job was for. */
+const requestFor = ({ request }: Modifiable, { typed }: Point): TuningRequest => {
+  if (!typed) return request;
+  const { settings: _settings, ...implement } = typed;
+  return withImplement(request, implement);
+};
+
+/** The body for POST /v1/design of settings by hand alone. They are compared with the limit on Ms of the design from
+ * which they deviate. */
+export function manualQuestion(from: Modifiable, point: Point): Record<string, unknown> {
+  const { result, index } = from;
+  const request = requestFor(from, point);
+  const Ms = point.tune?.["Ms"] ?? result.controllers[index]?.options?.["Ms"];
+  const evaluate = { ...request.evaluate, ...(typeof Ms === "number" ? { rank_limits: { Ms } } : {}) };
+  return { ...designBody({ ...request, evaluate }, result), tune: [], controllers: [givenOf(point)] };
 }
 
 /** Settings by hand in their displayed form: the job's other entries stay, without a verdict over all of them. */
-export function manualShown(from: Modifiable, point: Point, body: unknown, [entry, today]: Entry[]): Shown {
+export function manualShown(from: Modifiable, point: Point, answer: DesignAnswer): Shown {
+  const [entry] = answer.controllers;
+  const today = todaysOf(answer.controllers);
+  const whole = withGiven(requestFor(from, point), from.result, from.index, givenOf(point));
   const kept = withoutComparison(from.result);
   const controllers = kept.controllers.map((other, at) =>
     at === from.index
       ? manualEntry(entry!, from.result.controllers[from.index]!, point)
       : other.method === "baseline" && today
-        ? { ...other, ...today, method: "baseline" }
+        ? { ...other, ...today }
         : other,
   );
   const origin = [...controllers.keys()];
   const result = { ...kept, controllers };
-  return { path: "v1/evaluate", request: body, result, index: from.index, origin, cost: costOf([entry!]), whole: true };
+  return { request: whole.request, kept: whole.index, result, index: from.index, origin, cost: costOf([entry!]), whole: true };
 }
 
 /** Settings by hand keep the name of the entry from which they were moved, and its limits for the plots. */

@@ -80,7 +80,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const own = ownController(store, {
     announce,
     retune: retuneWhole,
-    onByHand: (controller) => modified.setByHand(controller),
+    onByHand: (settings) => modified.setByHand(settings),
   });
   const reports = reportCards(announce, { onRetune: retune, onTry: own.follow });
   const reportsAt = (place: "above" | "below") => reports.filter((card) => card.place === place).map((card) => card.element);
@@ -132,14 +132,9 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     return Math.min(workspace.selected ?? proposedEntry(result), result.controllers.length - 1);
   }
 
-  /** The request for the displayed result: that of a job, or the same with the member that was changed last. */
-  function requestShown(job: Job, { path, request }: OnScreen): TuningRequest {
-    return path === "v1/jobs" ? (request as TuningRequest) : (job.request ?? {});
-  }
-
   async function retune(lambda: number): Promise<void> {
     if (!finished || !screen) return;
-    const request = requestShown(finished.job, screen);
+    const request = screen.request ?? {};
     await events.onRetune(withLambda(request, screen.result, screen.index, lambda, store.get().methods), screen.index);
   }
 
@@ -194,7 +189,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
 
   const ownShown = (job: Job, whole: Result, index: number, name: string, units: UnitNames) => ({
     job,
-    request: requestShown(job, screen!),
+    request: screen!.request ?? {},
     result: screen!.result,
     index,
     name,

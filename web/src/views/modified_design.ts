@@ -3,7 +3,7 @@ import { sentenceOf } from "../api/client.ts";
 import { effect, untracked } from "@preact/signals-core";
 import { callSubject } from "../api/live.ts";
 import { isFinal } from "../api/types.ts";
-import type { Controller, Entry, Job, Method, Plant, Result, TuningRequest } from "../api/types.ts";
+import type { Entry, Job, Method, Plant, Result, TuningRequest } from "../api/types.ts";
 import { h, passFocus } from "../dom.ts";
 import { rowsOf, tuneEntryOf } from "../form/tuning_request.ts";
 import type { SliderSpec } from "../live/sliders.ts";
@@ -15,6 +15,7 @@ import { rewriteAddress } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { keptOtherwise } from "../words/kept.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
+import type { SettingsByHand } from "./typed_settings.ts";
 import { controlsCard } from "./cards/controls_card.ts";
 import { frontCard } from "./cards/front_card.ts";
 import type { FrontSubject } from "./cards/front_card.ts";
@@ -26,8 +27,7 @@ export interface OnScreen {
   index: number;
   /** The indices of the entries in the job's own result. */
   origin: number[];
-  path: string;
-  request: unknown;
+  request: TuningRequest | undefined;
 }
 
 export interface ModifiedDesign {
@@ -44,7 +44,7 @@ export interface ModifiedDesign {
   /** The entry has sliders, hence other settings can be shown in its place. */
   isMovable(): boolean;
   /** Shows these settings, as one step. */
-  setByHand(controller: Controller): void;
+  setByHand(settings: SettingsByHand): void;
   dispose(): void;
 }
 
@@ -85,8 +85,7 @@ export function modifiedDesign(
   const waits = h("p", { class: "hint", hidden: true });
   const about = h("p", {});
   const keep = h("button", { type: "button", onclick: () => keepIt() }, "Keep this design");
-  const keeping = h("p", { class: "actions" }, keep);
-  const away = h("div", { class: "trouble", hidden: true }, about, keeping);
+  const away = h("div", { class: "trouble", hidden: true }, about, h("p", { class: "actions" }, keep));
   controls.element.append(waits, trouble, away);
 
   const base = (): Entry | undefined => shown?.result.controllers[shown.index];
@@ -115,12 +114,12 @@ export function modifiedDesign(
       request. */
   async function keepDesign(): Promise<void> {
     const shownNow = live.answer.peek();
-    if (!shownNow || shownNow.path !== "v1/jobs") return;
+    if (!shownNow) return;
     keep.disabled = true;
     kept = shownNow.point;
     const before = shownNow.entry;
     try {
-      const made = await events.onKeep(shownNow.request as TuningRequest, shownNow.index);
+      const made = await events.onKeep(shownNow.request, shownNow.kept);
       const otherwise = made ? keptOtherwise(before, made.job, made.index) : "";
       if (otherwise) complain(otherwise);
     } catch (error) {
@@ -149,10 +148,9 @@ export function modifiedDesign(
     if (!answer) return;
     const { manual } = answer.point;
     const above = manual && answer.entry.standing?.group === "above_limit" ? answer.entry.standing.why : "";
-    keeping.hidden = manual !== null;
-    about.textContent = manual
-      ? `${above ? `${above} ` : ""}Manual settings have no report and no code; the request asks for their figures.`
-      : "Report and code still describe the job's design. Keep this design to get its own.";
+    const [these, own] = manual ? ["these settings", "their own"] : ["this design", "its own"];
+    keep.textContent = `Keep ${these}`;
+    about.textContent = `${above ? `${above} ` : ""}Report, change sheet and code still describe the job's design. Keep ${these} to get ${own}.`;
   }
 
   /** The limits of the curves other than Ms. */
@@ -256,7 +254,7 @@ export function modifiedDesign(
     proposal = { tune: job.request ? tuneEntryOf(job.request, result, index) : null, manual: null };
     sliders = controls.show(proposal, entry, methodOf(entry), unitNames(job.request?.units));
     const at = to ?? firstStep(addressedPoint(proposal, entry));
-    live.start({ from: { request, result, index }, point: proposal, today: todayOf(result)?.controller ?? null }, at);
+    live.start({ from: { request, result, index }, point: proposal }, at);
     if (addressed && !to) return showFront();
     addressed = true;
     settled(at.now);
@@ -305,12 +303,12 @@ export function modifiedDesign(
     onScreen(job, result, index) {
       const answer = live.answer.peek();
       const modified = answer && shown && shown.result === result && shown.index === index;
-      return modified ? answer : { result, index, origin: [...result.controllers.keys()], path: "v1/jobs", request: job.request };
+      return modified ? answer : { result, index, origin: [...result.controllers.keys()], request: job.request };
     },
     answer: () => live.answer.peek(),
     isMovable: () => live.point.peek() !== null && !controls.element.hidden,
-    setByHand(controller) {
-      live.settle({ tune: (live.point.peek() ?? proposal!).tune, manual: controller });
+    setByHand({ controller, typed }) {
+      live.settle({ tune: (live.point.peek() ?? proposal!).tune, manual: controller, ...(typed ? { typed } : {}) });
     },
     mark() {
       const answer = live.answer.peek();

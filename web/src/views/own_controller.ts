@@ -9,7 +9,7 @@ import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { choicesOf } from "../form/product_settings.ts";
 import { givenBaseline, withBaseline, withImplement } from "../form/tuning_request.ts";
-import { implementOf, inUnits, mineOfRequest, named, rememberMine, sameImplement, typedBaseline } from "../my_controller.ts";
+import { implementOf, inUnits, mineOfRequest, named, rememberMine, sameImplement, typedInto } from "../my_controller.ts";
 import type { MyController } from "../my_controller.ts";
 import type { Store } from "../store.ts";
 import { formOf, formRows, productRows } from "../words/answer.ts";
@@ -28,7 +28,7 @@ import { snippetBlocks } from "./cards/snippets.ts";
 import { askTyped } from "./typed_question.ts";
 import type { TypedAnswer, TypedQuestion } from "./typed_question.ts";
 import { controllerInForm, controllerInProduct } from "./typed_settings.ts";
-import type { TypedTexts } from "./typed_settings.ts";
+import type { SettingsByHand, TypedTexts } from "./typed_settings.ts";
 
 interface Shown {
   job: Job;
@@ -64,7 +64,7 @@ export interface OwnControllerEvents {
   /** Designs again in this job's place. */
   retune(request: TuningRequest): Promise<void>;
   /** Settings that were typed in the card: shown as set by hand. */
-  onByHand(controller: Controller): void;
+  onByHand(settings: SettingsByHand): void;
 }
 
 export function ownController(store: Store, { announce, retune, onByHand }: OwnControllerEvents): OwnController {
@@ -314,7 +314,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     if (!request || !mine) return;
     if (!settings) return complain(`Enter the present settings of ${mine.name} first.`);
     if (!implement) return complain("Give the ranges above first.");
-    await work(today.button, withBaseline(withImplement(request, implement), typedBaseline(implement, settings)));
+    await work(today.button, withBaseline(withImplement(request, implement), typedInto(implement, settings)));
   }
 
   picker.setProducts(store.get().products);

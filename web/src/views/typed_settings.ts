@@ -4,14 +4,21 @@ import { settingsOf } from "../api/evaluate.ts";
 import { entriesOf } from "../api/live.ts";
 import type { CallSubject } from "../api/live.ts";
 import { controllerOf } from "../api/products.ts";
-import type { Controller, Entry, Implement, Product, TuningRequest } from "../api/types.ts";
+import type { Controller, Entry, Implement, Product, TuningRequest, TypedSettings } from "../api/types.ts";
 import { parseNumber } from "../form/number.ts";
 import { readSettings } from "../form/product_settings.ts";
+import { typedInto } from "../my_controller.ts";
 import { OFF } from "../words/answer.ts";
 import type { SettingsForm } from "../words/settings.ts";
 
 /** The texts of the rows by their names. */
 export type TypedTexts = Record<string, string>;
+
+/** `typed`: as they stand in the product; missing for a form. */
+export interface SettingsByHand {
+  controller: Controller;
+  typed?: TypedSettings;
+}
 
 /** Throws the sentence about a text that cannot be read. */
 export async function controllerInProduct(
@@ -19,10 +26,10 @@ export async function controllerInProduct(
   implement: Implement & { product: string },
   texts: TypedTexts,
   request: TuningRequest,
-): Promise<Controller> {
-  const { settings, errors } = readSettings(product, texts);
+): Promise<SettingsByHand> {
+  const { settings = {}, errors } = readSettings(product, texts);
   if (errors[0]) throw new Error(errors[0].detail);
-  return controllerOf(implement, settings ?? {}, request.units);
+  return { controller: await controllerOf(implement, settings, request.units), typed: typedInto(implement, settings) };
 }
 
 function read(texts: TypedTexts, name: string): number | null {
@@ -50,8 +57,8 @@ export async function controllerInForm(
   form: SettingsForm,
   texts: TypedTexts,
   subject: CallSubject,
-): Promise<Controller> {
-  if (form === "ideal" || form === "npid") return withTexts({ ...entry.controller! }, texts);
+): Promise<SettingsByHand> {
+  if (form === "ideal" || form === "npid") return { controller: withTexts({ ...entry.controller! }, texts) };
   const { b_equivalent: _b, action: _action, why_null: _why, ...before } = entry.equivalents![form] as unknown as Record<string, unknown>;
   const given = withTexts(before, texts);
   const [answer] = await entriesOf({ ...subject, controllers: [settingsOf(given)], evaluate: { points: 0 } });
@@ -59,5 +66,5 @@ export async function controllerInForm(
   if (!parallel) throw new Error(answer?.error?.detail ?? `These settings have no ideal form.`);
   const { form: _form, Kp, Ki, Kd, ...others } = parallel;
   const ideal = { ...others, form: "ideal", Kp, Ti: Ki ? Kp / Ki : null, Td: (Kd ?? 0) / Kp };
-  return ideal as unknown as Controller;
+  return { controller: ideal as unknown as Controller };
 }

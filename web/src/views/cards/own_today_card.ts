@@ -1,5 +1,5 @@
 // Today's settings in the user's own controller, for a comparison with the design.
-import type { Product, SettingValue, TypedBaseline } from "../../api/types.ts";
+import type { Product, SettingValue, TypedSettings } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import { productFields } from "../../form/product_fields.ts";
@@ -9,7 +9,7 @@ export interface OwnTodayCard {
   /** The button that compares the design with them. */
   button: HTMLButtonElement;
   setProduct(product: Product | null): void;
-  load(baseline: TypedBaseline): void;
+  load(baseline: TypedSettings): void;
 }
 
 /** `onSet`: undefined if nothing is typed. */

@@ -19,7 +19,7 @@ export interface TitleCard {
   /** `entry`: the controller on the screen, if there is one; report and change sheet are about it. */
   show(job: Job | null, entry?: number | null): void;
   /** The request that leads to the displayed result; `own`: it is the job's own, for which there is a report. */
-  setShown(shown: { path: string; request: unknown }, own: boolean): void;
+  setShown(shown: { request: unknown }, own: boolean): void;
 }
 
 /** `screen`: the heading of a job without a name. `actions`: in addition to the links that every job has. */
@@ -83,9 +83,9 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       link.show(job, request);
       showPages(true);
     },
-    setShown({ path, request }, own) {
-      menu.show(path, request);
-      if (about) link.show(about, path === "v1/jobs" ? (request as TuningRequest) : about.request);
+    setShown({ request }, own) {
+      menu.show("v1/jobs", request);
+      if (about) link.show(about, request as TuningRequest);
       showPages(own);
     },
   };

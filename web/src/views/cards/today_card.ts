@@ -3,7 +3,7 @@ import { sentenceOf } from "../../api/client.ts";
 import { newest } from "../../api/latest.ts";
 import { getProduct } from "../../api/products.ts";
 import { controllerInRecord } from "../../api/records.ts";
-import type { Baseline, FieldError, Filter, RecordedTest, SettingValue, TuningRequest, Units } from "../../api/types.ts";
+import type { FieldError, Filter, GivenController, RecordedTest, SettingValue, TuningRequest, Units } from "../../api/types.ts";
 import { foldedOnPhones, h, uniqueId } from "../../dom.ts";
 import { choiceField, textField } from "../../form/controls.ts";
 import { openAround } from "../../form/errors.ts";
@@ -12,7 +12,7 @@ import { keptNote, objectOf } from "../../form/kept_note.ts";
 import { parseNumber } from "../../form/number.ts";
 import { productFields } from "../../form/product_fields.ts";
 import { typedParts } from "../../form/typed.ts";
-import { implementOf, mineOfRequest, typedBaseline } from "../../my_controller.ts";
+import { implementOf, mineOfRequest, typedInto } from "../../my_controller.ts";
 import type { MyController } from "../../my_controller.ts";
 import { exactText } from "../../words/numbers.ts";
 import { foundWords } from "../../words/found.ts";
@@ -208,10 +208,10 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     if (isFound()) ask();
   });
 
-  function readOwn(): { baseline: Baseline | undefined; errors: FieldError[] } {
+  function readOwn(): { baseline: GivenController | undefined; errors: FieldError[] } {
     const { settings, errors: faults } = own.read();
     if (!settings || !mine) return { baseline: undefined, errors: faults };
-    return { baseline: typedBaseline(mine, settings), errors: faults };
+    return { baseline: typedInto(mine, settings), errors: faults };
   }
 
   form.input.addEventListener("change", label);
@@ -346,7 +346,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       const others = [filter, ...(form.input.value === "npid" ? [delta] : [])].map((field) => field.input.value.trim());
       if ([...typed, ...others].every((text) => text === "")) return { baseline: undefined, errors: [] };
       const faults: FieldError[] = [];
-      const baseline: Baseline = { form: form.input.value, ...rest };
+      const baseline: GivenController = { form: form.input.value, ...rest };
       names().forEach((key, index) => {
         const text = typed[index]!;
         if (text === "" && key !== "Kp") {

@@ -46,7 +46,7 @@ ${head(up)}
 </head>
 <body>
 <header class="top"><a class="brand" href="${up}#/">Tunewright</a>
-<nav aria-label="Documents"><a href="${up}documents/README.html">Documents</a><a href="${up}documents/glossary.html">Glossary</a><a href="${up}documents/methods.html">Methods</a><a href="${up}openapi.json">API</a></nav></header>
+<nav aria-label="Documents"><a href="${up}documents/README.html">Documents</a><a href="${up}documents/glossary.html">Glossary</a><a href="${up}documents/methods.html">Methods</a><a href="${up}#/docs">API</a></nav></header>
 <main id="main" class="document">
 ${body}</main>
 </body>

@@ -17,6 +17,7 @@ export function header(store: Store, tools: HTMLElement[]): HTMLElement {
     compare: h("a", { href: "#/", hidden: true }, "Compare"),
     jobs: h("a", { href: "#/jobs" }, "Jobs"),
     methods: h("a", { href: "#/methods" }, "Methods"),
+    docs: h("a", { href: "#/docs" }, "API"),
   };
   /** With the last positions of its sliders. */
   let design: Extract<Route, { screen: "design" }> | null = null;
@@ -53,6 +54,6 @@ export function header(store: Store, tools: HTMLElement[]): HTMLElement {
     { class: "top" },
     h("a", { class: "brand", href: "#/" }, "Tunewright"),
     nav,
-    h("div", { class: "tools" }, tools, h("a", { href: "openapi.json" }, "API"), themeButton()),
+    h("div", { class: "tools" }, tools, themeButton()),
   );
 }

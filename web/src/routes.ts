@@ -26,7 +26,9 @@ export type Route =
   /** The loops of a batch, in an order as in compare. */
   | { screen: "batch"; id: string; sort: string }
   /** The methods of the service, or one of them. */
-  | { screen: "methods"; id: string };
+  | { screen: "methods"; id: string }
+  /** The API: the call with that id, or the one with which to begin. */
+  | { screen: "docs"; call: string };
 
 export type JobScreen = "design" | "compare";
 export type JobRoute = Extract<Route, { screen: JobScreen }>;
@@ -52,6 +54,7 @@ export function parseRoute(hash: string): Route {
   if (parts[0] === "relay") return { screen: "relay", plant: parts[1] ?? "", values };
   if (parts[0] === "jobs" && !parts[1]) return { screen: "jobs", text: values["q"] ?? "" };
   if (parts[0] === "batches" && parts[1]) return { screen: "batch", id: parts[1], sort: values["sort"] ?? "" };
+  if (parts[0] === "docs") return { screen: "docs", call: parts[1] ?? "" };
   if (parts[0] === "methods") return { screen: "methods", id: parts[1] ?? "" };
   if (parts[0] === "jobs" && parts[1]) {
     if (parts[2] === "compare") {
@@ -112,6 +115,8 @@ export function formatRoute(route: Route): string {
       return `#/examples/${encodeURIComponent(route.id)}`;
     case "edit":
       return `#/jobs/${encodeURIComponent(route.job)}/edit`;
+    case "docs":
+      return route.call === "" ? "#/docs" : `#/docs/${encodeURIComponent(route.call)}`;
     case "methods":
       return route.id === "" ? "#/methods" : `#/methods/${encodeURIComponent(route.id)}`;
     case "jobs":

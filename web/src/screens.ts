@@ -310,6 +310,11 @@ export function screens(
     if (part) mount(part.methodsView(store, route.id), "Methods · Tunewright", focus);
   }
 
+  async function openApi(route: Extract<Route, { screen: "docs" }>, focus: boolean): Promise<void> {
+    const part = await later(import("./api_page/view.ts"), route, "API", focus);
+    if (part) mount(part.apiView(route.call, announce), "API · Tunewright", focus);
+  }
+
   async function openDesign(route: Route, focus: boolean): Promise<void> {
     const part = await later(loadDesign(), route, "Design", focus);
     const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
@@ -359,6 +364,7 @@ export function screens(
     }
     if (route.screen === "range") return void openRange(route, !first);
     if (route.screen === "relay") return void openRelay(route, !first);
+    if (route.screen === "docs") return void openApi(route, !first);
     if (route.screen === "methods") return void openMethods(route, !first);
     if (route.screen === "jobs" || route.screen === "batch") return void openList(route, !first);
     mount(startScreen(), "Tunewright", !first);

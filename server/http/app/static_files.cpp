@@ -72,7 +72,8 @@ void StaticFiles::add(const std::string& path, std::string body) {
 std::optional<Response> StaticFiles::find(const Request& request) const {
     std::string path;
     for (const std::string& segment : request.segments) path.append("/").append(segment);
-    const auto found = files_.find(path.empty() ? "/index.html" : path);
+    auto found = files_.find(path.empty() ? "/index.html" : path);
+    if (found == files_.end()) found = files_.find(path + ".html");
     if (found == files_.end()) return std::nullopt;
     const File& file = found->second;
     Response response = file.body.respond(request);

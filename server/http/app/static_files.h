@@ -15,7 +15,8 @@ public:
     /// Reads the folder; if it is missing, or has no index.html, a plain page explains how to build it.
     explicit StaticFiles(const std::string& folder);
 
-    /// The file at the request's path ("/" is index.html) with its headers; empty if there is none.
+    /// The file at the request's path with its headers; "/" is index.html, and ".html" may be left out. Empty if there
+    /// is none.
     std::optional<Response> find(const Request& request) const;
 
     std::size_t size() const { return files_.size(); }

@@ -82,8 +82,8 @@ interface Answer {
   text: string;
 }
 
-/** Asks for the service's key if it is required, and repeats the call. */
-async function answerOf(
+/** The answer as it is, a refusal too. Asks for the service's key if it is required, and repeats the call. */
+export async function answerOf(
   method: string,
   path: string,
   body: unknown,

@@ -26,6 +26,7 @@ export function openHelp(): void {
       h(
         "ul",
         { class: "document-list" },
+        h("li", {}, h("a", { href: "#/docs" }, "API, call by call")),
         DOCUMENTS.map(({ id, title }) => h("li", {}, h("a", { href: documentAddress(id) }, title))),
       ),
     ]),

@@ -31,7 +31,7 @@ const go = (address: string): void => {
 };
 
 function screenFinds(): Find[] {
-  const links = [...document.querySelectorAll<HTMLAnchorElement>(".top nav a[href], .top .tools a[href]")];
+  const links = [...document.querySelectorAll<HTMLAnchorElement>(".top nav a[href]")];
   return links
     .filter((link) => !link.hidden)
     .map((link) => ({ id: link.href, kind: "screen", text: link.textContent ?? "", aside: "", go: () => link.click() }));

@@ -3,8 +3,10 @@
 #include <rapidjson/error/error.h>
 #include <rapidjson/reader.h>
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <vector>
 
@@ -49,7 +51,23 @@ namespace {
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 constexpr bool opens(char c) { return c == '{' || c == '['; }
 constexpr bool closes(char c) { return c == '}' || c == ']'; }
-constexpr bool ends_word(char c) { return opens(c) || closes(c) || c == ',' || c == ':' || c == '"' || is_blank(c); }
+constexpr auto kEndsWord = [] {
+    std::array<bool, 256> ends{};
+    for (const unsigned char c : std::string_view("{}[],:\" \t\n\r")) ends[c] = true;
+    return ends;
+}();
+constexpr bool ends_word(char c) { return kEndsWord[static_cast<unsigned char>(c)]; }
+
+/// Bytes that a character outside of strings adds to a tree: measured sizes of an element, a member (without its name),
+/// a container and a string of nlohmann::ordered_json, including spare capacity and the overhead of the system's
+/// allocator.
+constexpr auto kTreeBytes = [] {
+    std::array<std::uint8_t, 256> bytes{};
+    bytes[','] = bytes[':'] = 32;
+    bytes['{'] = bytes['['] = bytes['"'] = 64;
+    return bytes;
+}();
+constexpr std::size_t kMaxTreeBytes = std::ranges::max(kTreeBytes);
 
 /// The end of the token that begins at `at`; undefined, but within the text, if it is not JSON.
 std::size_t after_token(std::string_view json, std::size_t at) {
@@ -357,25 +375,11 @@ private:
 
 }  // namespace
 
-/// Measured sizes of an element, a member (without its name), a container and a text of nlohmann::ordered_json,
-/// including spare capacity and the overhead of the system's allocator.
 std::size_t tree_size(std::string_view text) {
-    constexpr std::size_t element = 32, member = 32, container = 64, string = 64;
     std::size_t size = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        switch (text[i]) {
-            case '"':
-                size += quoted ? 0 : string;
-                quoted = !quoted;
-                break;
-            case '\\': i += quoted ? 1 : 0; break;
-            case ',': size += quoted ? 1 : element; break;
-            case ':': size += quoted ? 1 : member; break;
-            case '{':
-            case '[': size += quoted ? 1 : container; break;
-            default: size += quoted ? 1 : 0;
-        }
+    for (std::size_t at = 0, end = 0; at < text.size(); at = end) {
+        end = text[at] == '"' ? after_token(text, at) : at + 1;
+        size += kTreeBytes[static_cast<unsigned char>(text[at])] + (end - at - 1);
     }
     return size;
 }
@@ -383,7 +387,7 @@ std::size_t tree_size(std::string_view text) {
 std::variant<Json, Problem> parse(std::string_view text) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-    if (tree_size(text) > kMaxTree)
+    if (text.size() > kMaxTree / kMaxTreeBytes && tree_size(text) > kMaxTree)
         return Problem{413,
                        "too-large",
                        "The request is too large",

@@ -18,11 +18,12 @@ constexpr std::size_t kTree = 36;  // memory of JSON at most, relative to its by
 /// The bytes of the texts in a JSON body, each of which may be a file.
 std::size_t texts_of(std::string_view json) {
     std::size_t bytes = 0;
-    for (std::size_t end = 0, start = json.find('"'); start < json.size(); start = json.find('"', end + 1)) {
-        end = json.find_first_of("\\\"", start + 1);
-        while (end < json.size() && json[end] == '\\') end = json.find_first_of("\\\"", end + 2);
-        end = std::min(end, json.size());
-        bytes += end - start - 1;
+    bool quoted = false;
+    for (std::size_t at = 0; at < json.size(); ++at) {
+        if (json[at] == '"') quoted = !quoted;
+        if (!quoted || json[at] == '"') continue;
+        ++bytes;
+        if (json[at] == '\\' && at + 1 < json.size()) ++at, ++bytes;
     }
     return bytes;
 }

@@ -222,6 +222,7 @@ class StoreOwesAnAnswerTest(unittest.TestCase):
             self.assertEqual(len(service.get("/v1/jobs").json["jobs"]), 1)
 
 
+@unittest.skipIf("TSAN_OPTIONS" in os.environ, "the memory of the sanitizer counts too")
 class LargeRecordTest(unittest.TestCase):
     """A file as a text of JSON, with the shortest possible numbers."""
 

@@ -214,10 +214,12 @@ std::optional<StoreFault> SqliteWriter::commit_where_room(std::vector<Change>& g
                            [kind](const Change& change) { return change.kind == kind; });
     };
     if (has_moved()) return kMoved;
-    const bool needs_room = any(Change::Kind::job);
-    if (needs_room && is_scarce()) refill();
-    if (needs_room && is_scarce())
-        return StoreFault{StoreFault::Kind::full, "the disk is nearly full; the rest is reserved for existing jobs"};
+    if (any(Change::Kind::job) && is_scarce()) {
+        refill();
+        if (is_scarce())
+            return StoreFault{StoreFault::Kind::full,
+                              "the disk is nearly full; the rest is reserved for existing jobs"};
+    }
     auto fault = commit(group, first, count);
     if (!fault || fault->kind != StoreFault::Kind::full) return fault;
     refilled_at_ = {};  // immediately: the attempt has filled the log, and other programs would take the freed space

@@ -38,6 +38,12 @@ TEST(Weight, OnlyWhatIsQuotedWeighsAsAFileMay) {
     for (const char* broken : {"\"", "\"\\", "\"abc", "{\"a\\"}) EXPECT_LE(beyond_its_tree(broken), 5U * 4) << broken;
 }
 
+TEST(Weight, AnEscapedCharacterWeighsAtLeastTheCharacterThatItMeans) {
+    std::string escapes;
+    for (int i = 0; i < 1000; i++) escapes += "\\\\\\n";
+    EXPECT_GE(api::tree_size('"' + escapes + '"'), 2000U);
+}
+
 TEST(Body, TheLargestTakesNoMoreThanHalfOfTheMemory) {
     for (const std::size_t memory : {std::size_t{8} << 20, std::size_t{64} << 20, std::size_t{300} << 20,
                                      std::size_t{512} << 20, std::size_t{4} << 30, std::size_t{64} << 30}) {

@@ -9,7 +9,7 @@
 namespace tunewright {
 namespace {
 
-EvaluationResult answer_on(const PlantModel& plant, const std::vector<Controller>& controllers,
+EvaluationResult answer_on(const PlantModel& plant, const std::vector<GivenController>& controllers,
                            const EvaluateOptions& options = {}) {
     auto subject = AnalysedPlant::make(plant);
     auto result = evaluate_all(std::get<AnalysedPlant>(subject), controllers, options, std::nullopt, {}, {});

@@ -27,6 +27,9 @@ struct LawLimits {
     int min_certain_rows = 150;
     /// Of u's moves: smaller residuals are rounding of the record's last digits, which any further term explains a bit.
     double min_residual = 1e-4;
+    /// Noise of u over that of Kp y, and share of u's moves that the law leaves: less noise says that the controller
+    /// reads y without the record's noise, if it is no filter that explains nearly all moves.
+    double max_noise_in_u = 0.4, min_left_without_noise = 0.1;
     /// Relative: programs differ in the order of their sums, in what a limit does to the integral and in rounding.
     double min_error = 0.007;
 };
@@ -60,6 +63,14 @@ LawFilter filter_of(FilterType type) {
 
 int count(const std::vector<char>& used) { return static_cast<int>(std::ranges::count(used, 1)); }
 
+/// u in the rows that are used, one after the other.
+std::vector<double> moving(const LawSamples& s, const std::vector<char>& used) {
+    std::vector<double> u;
+    for (std::size_t j = 0; j < used.size(); ++j)
+        if (used[j]) u.push_back(s.u[j]);
+    return u;
+}
+
 double deviation_of_moves(const LawSamples& s, const std::vector<char>& used) {
     std::vector<double> moves;
     for (std::size_t j = 1; j < used.size(); ++j)
@@ -72,6 +83,7 @@ struct LawOfRecord {
     LawSamples samples;
     std::vector<char> used;
     FoundLaws laws;  ///< the best first
+    bool other_reading = false;
     int odd = 0;
 };
 
@@ -92,17 +104,25 @@ Expected<LawOfRecord> law_of_record(const Record& record, const ControllerRecord
     if (count(out.used) < kLimits.min_increments) return too_few(count(out.used));
     const double least = std::max(s.u_step / std::sqrt(24.0), kLimits.min_residual * deviation_of_moves(s, out.used));
     for (int pass = 0; pass < 3; ++pass) {
-        out.laws = search_law(s, out.used, least, out.laws);
+        out.laws = search_law(s, out.used, least, out.other_reading, out.laws);
         if (out.laws.empty())
             return refused(
                 "u does not follow y as a PID controller's output does. Check that u is this loop's own output.");
-        const FoundLaw& law = out.laws.front();
+        const FoundLaw law = out.laws.front();
         if (pass == 0) {
-            take_still_in(s, law, std::sqrt(law.fit.residual / law.samples));
+            const double noise = std::abs(law.fit.value[kLawP]) * white_noise(s.y);
+            const double left =
+                law.fit.residual / law_moments(law_residuals(s, out.used, law).white)[kLawTarget][kLawTarget];
+            out.other_reading = left > kLimits.min_left_without_noise &&
+                                white_noise(moving(s, out.used)) < kLimits.max_noise_in_u * noise;
+            take_still_in(s, law, out.other_reading ? 6 * noise : 3 * std::sqrt(law.fit.residual / law.samples));
             out.used = law_increments(s, false);
             if (count(out.used) < kLimits.min_increments) return too_few(count(out.used));
+            // The law is another one: its first moves of the set point would be odd.
+            const bool first_moves = set_point_moves(s, out.used) && !law.has(kLawSetPoint);
+            if (out.other_reading || first_moves) out.laws.clear();
         }
-        if (pass < 2) out.odd += leave_odd_out(s, out.used, law, least);
+        if (pass < 2 && !out.laws.empty()) out.odd += leave_odd_out(s, out.used, law, least);
     }
     leave_zero_terms_out(s, out.used, out.laws);
     if (options.filter) prefer_filter(filter_of(*options.filter), out.laws);
@@ -176,12 +196,14 @@ public:
         const double y_rounding = s_.y_step * s_.y_step / 12;
         // A residual below that of rounded y says that the controller read y as rounded as the record has it.
         constexpr double kMinShareOfRounding = 0.3, kShareAfterFilter = 0.01;
-        const LawFit corrected = without_errors_of_y(s_, moments_, law_, std::min(y_variance_, y_rounding));
+        const LawFit corrected = without_errors_of_y(
+            s_, moments_, law_, found.other_reading ? y_variance_ : std::min(y_variance_, y_rounding));
         // Noise of several steps makes the errors of rounding white, and small beside y's moves.
         constexpr double kCoarseSteps = 3;
         y_may_be_rounded_ =
             white_noise(s_.y) < kCoarseSteps * s_.y_step && y_variance_ > kShareAfterFilter * y_rounding;
-        const bool correct = corrected.solved && s_.y_step > 0 && y_variance_ > kMinShareOfRounding * y_rounding;
+        const bool correct = corrected.solved && (found.other_reading || s_.y_step > 0) &&
+                             y_variance_ > kMinShareOfRounding * y_rounding;
         fit_ = correct ? corrected : law_.fit;
         other_fit_ = correct ? law_.fit : corrected;
         covariance_ = law_covariance(s_, found.used, law_);
@@ -230,8 +252,10 @@ public:
         out.delay = law_.shape.delay_sample ? s_.period : law_.shape.delay_rows * s_.period / s_.rows_per_sample;
         out.explained = explained_;
         out.rows = count(found_.used);
-        out.manual_rows = s_.manual_rows + count(s_.still);
-        out.limited_rows = s_.limited_rows;
+        out.manual_rows = s_.manual_rows;
+        for (std::size_t j = 0; j < s_.still.size(); ++j)
+            out.manual_rows += s_.still[j] && !s_.limited[j] && !s_.excluded[j];
+        out.limited_rows = count(s_.limited);
         out.odd_rows = found_.odd;
         return out;
     }
@@ -286,7 +310,7 @@ private:
         shift.count_in(other_fit_, y_may_be_rounded_ ? 1 : kRounding);
         shift.count_in(without_errors_of_y(s_, moments_, law_, y_variance_), kReverse * law_.theta);
         const LawColumns columns = law_columns(s_, law_.shape);
-        for (const double theta : {0.5 * law_.theta, 1 - 0.3 * (1 - law_.theta)}) {
+        for (const double theta : {found_.other_reading ? law_.theta : 0.5 * law_.theta, 1 - 0.3 * (1 - law_.theta)}) {
             if (theta == law_.theta) continue;
             const LawColumns white = whitened(columns, found_.used, theta, s_.r.empty());
             shift.count_in(fit_law(law_moments(white), law_.columns), kTheta);

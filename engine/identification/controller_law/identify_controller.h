@@ -47,6 +47,8 @@ struct IdentifiedController {
 ///    (law_regression.h); the least Bayesian information criterion decides. Tf is on a grid, then refined.
 /// 3. Moves of u that are off the law by six deviations are left out, still stretches of u that the law explains by
 ///    rounding come in; step 2 again from what was found.
+///    Where u lacks the noise of y and no law explains its moves, the controller reads y otherwise than the record
+///    does: step 2 once more, without filters and with errors of u itself (law_search.h).
 /// 4. Terms that are 0 within their errors are left out; the controller's own filter is preferred (law_terms.h).
 /// 5. Rounding of y, where the residual has room for it, is taken out of the moments (law_uncertainty.h).
 /// 6. Standard errors: of the residuals with their correlation; larger where rows do not show the time between samples,

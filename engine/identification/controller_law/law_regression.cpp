@@ -97,7 +97,7 @@ std::vector<char> law_increments(const LawSamples& s, bool with_still) {
         8;                           // increments: in a shorter stretch the free start takes most of the information
     constexpr double kMaxGap = 2.5;  // sample spacings: over a longer gap the integral is not known
     std::vector<char> used(s.t.size(), 0);
-    const auto out = [&](std::size_t j) { return s.excluded[j] || (!with_still && s.still[j]); };
+    const auto out = [&](std::size_t j) { return s.excluded[j] || s.limited[j] || (!with_still && s.still[j]); };
     for (std::size_t j = 1; j < used.size(); ++j)
         used[j] = !out(j) && !out(j - 1) && s.t[j] - s.t[j - 1] < kMaxGap * s.period;
     for (std::size_t j = 1; j < used.size();) {

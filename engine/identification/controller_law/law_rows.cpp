@@ -45,16 +45,18 @@ int leave_odd_out(const LawSamples& s, std::vector<char>& used, const FoundLaw& 
     return static_cast<int>(odd.size());
 }
 
-void take_still_in(LawSamples& s, const FoundLaw& law, double deviation) {
+void take_still_in(LawSamples& s, const FoundLaw& law, double hidden) {
     const LawColumns columns = law_columns(s, law.shape);
     const std::size_t n = s.t.size();
     for (std::size_t j = 0; j < n;) {
-        if (!s.still[j]) {
+        // A loop at rest before its first move stands at an end of u's range too.
+        const auto stands = [&](std::size_t k) { return s.still[k] && (!s.limited[k] || j == 0); };
+        if (!stands(j)) {
             ++j;
             continue;
         }
         std::size_t to = j;
-        while (to < n && s.still[to] && s.u[to] == s.u[j]) ++to;
+        while (to < n && stands(to) && s.u[to] == s.u[j]) ++to;
         double at = 0, low = 0, high = 0;
         for (std::size_t k = j + 1; k < to; ++k) {
             for (const int column : law.columns) {
@@ -64,8 +66,8 @@ void take_still_in(LawSamples& s, const FoundLaw& law, double deviation) {
             low = std::min(low, at);
             high = std::max(high, at);
         }
-        if (high - low <= kHiddenSteps * s.u_step + 3 * deviation)
-            std::fill(s.still.begin() + static_cast<long>(j), s.still.begin() + static_cast<long>(to), 0);
+        if (high - low <= kHiddenSteps * s.u_step + hidden)
+            for (std::size_t k = j; k < to; ++k) s.still[k] = s.limited[k] = 0;
         j = to;
     }
 }

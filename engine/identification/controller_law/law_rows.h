@@ -18,8 +18,8 @@ LawResiduals law_residuals(const LawSamples& samples, const std::vector<char>& u
 /// `least`: the standard deviation that rounding leaves. Returns how many.
 int leave_odd_out(const LawSamples& samples, std::vector<char>& used, const FoundLaw& law, double least);
 
-/// Takes stretches in which u stands still back in where the law moves u by no more than rounding hides; `deviation` is
-/// that of the residuals. The others are manual.
-void take_still_in(LawSamples& samples, const FoundLaw& law, double deviation);
+/// Takes stretches in which u stands still, also the first one at an end of its range, back in where the law moves u by
+/// no more than `hidden` and rounding. The others are manual or limited.
+void take_still_in(LawSamples& samples, const FoundLaw& law, double hidden);
 
 }  // namespace tunewright

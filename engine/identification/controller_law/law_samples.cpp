@@ -128,6 +128,7 @@ void take(LawSamples& out, const AllRows& rows, std::size_t i, double t) {
 void leave_ends_out(LawSamples& s) {
     const auto [low, high] = std::ranges::minmax(s.u);
     const std::size_t n = s.u.size();
+    s.limited.assign(n, 0);
     for (const double end : {low, high}) {
         std::size_t longest = 0;
         for (std::size_t i = 0; i < n;) {
@@ -138,7 +139,7 @@ void leave_ends_out(LawSamples& s) {
         }
         if (longest < kMinHeldSamples) continue;
         for (std::size_t i = 0; i < n; ++i)
-            if (s.u[i] == end && !s.excluded[i]) s.excluded[i] = 1, ++s.limited_rows;
+            if (s.u[i] == end && !s.excluded[i]) s.limited[i] = 1;
     }
 }
 

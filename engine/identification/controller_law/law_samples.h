@@ -7,18 +7,20 @@
 
 namespace tunewright {
 
-/// Samples in time order. t, u, y, row and excluded have equal lengths; r is empty or as long. In the record's units.
+/// Samples in time order. t, u, y, row, excluded, limited and still have equal lengths; r is empty or as long. In the
+/// record's units.
 struct LawSamples {
     std::vector<double> t, u, y, r;
     std::vector<int> row;           ///< of each sample among the rows with numbers
     std::vector<double> rows_y;     ///< y of all rows with numbers
     std::vector<double> rows_r;     ///< the same of r; empty: none
-    std::vector<char> excluded;     ///< in manual, or at an end of u's range
+    std::vector<char> excluded;     ///< in manual
+    std::vector<char> limited;      ///< at an end of u's range, where u stays
     std::vector<char> still;        ///< u stands still for kMinStillSamples and more: manual, or rounded too coarsely
     double period = 0;              ///< median time from one sample to the next, > 0
     double rows_per_sample = 1;     ///< > 1: u is a staircase over the rows, whose period is the controller's
     double u_step = 0, y_step = 0;  ///< rounding of u and y, 0: none found
-    int manual_rows = 0, limited_rows = 0;
+    int manual_rows = 0;
 
     int size() const { return static_cast<int>(t.size()); }
 };

@@ -11,6 +11,7 @@ namespace tunewright {
 namespace {
 
 constexpr std::array kThetas = {0.0, 0.4, 0.7, 0.85, 0.94, 0.98, 1.0};
+constexpr std::size_t kNearOne = 4;  // of kThetas
 constexpr std::array kRatios = {0.06, 0.12, 0.25, 0.5, 0.8, 1.25, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 22.0, 32.0, 50.0};
 // Additional penalty of the criterion on a derivative or a filter. Rounding and rows
 // between samples make residuals that are not white, and each extra term explains a little of them.
@@ -33,14 +34,18 @@ double free_starts(const std::vector<char>& used, double theta) {
 
 class Search {
 public:
-    Search(const LawSamples& s, const std::vector<char>& used, double least_error)
-        : s_(s), used_(used), least_(least_error), r_moves_(set_point_moves(s, used)) {
+    Search(const LawSamples& s, const std::vector<char>& used, double least_error, bool other_reading)
+        : s_(s),
+          used_(used),
+          least_(least_error),
+          first_theta_(other_reading ? kNearOne : 0),
+          r_moves_(set_point_moves(s, used)) {
         for (std::size_t i = 0; i < kThetas.size(); ++i) starts_[i] = free_starts(used, kThetas[i]);
     }
 
     void try_shape(const LawShape& shape) {
         const LawColumns columns = law_columns(s_, shape);
-        for (std::size_t i = 0; i < kThetas.size(); ++i) {
+        for (std::size_t i = first_theta_; i < kThetas.size(); ++i) {
             if (best_theta_ && (i + 1 < *best_theta_ || i > *best_theta_ + 1)) continue;
             const LawColumns white = whitened(columns, used_, kThetas[i], s_.r.empty());
             const LawMoments m = law_moments(white);
@@ -108,6 +113,7 @@ private:
     const LawSamples& s_;
     const std::vector<char>& used_;
     double least_;
+    std::size_t first_theta_;
     bool r_moves_;
     double least_criterion_ = 1e300;
     std::optional<std::size_t> best_theta_, next_theta_;  ///< the neighbours of the first are tried
@@ -153,14 +159,14 @@ void refine(Search& search, double range, double width, double last, bool own_st
     }
 }
 
-std::vector<LawShape> shapes_to_try(bool own_steps) {
+std::vector<LawShape> shapes_to_try(bool own_steps, bool with_filter) {
     std::vector<LawShape> delays = {{}, {.delay_rows = 1}}, shapes;
     if (own_steps) delays.push_back({.delay_sample = true});
     for (const double delay : {0.3, 0.6, 1.3, 1.6})
         if (!own_steps) delays.push_back({.delay_rows = delay});
     for (LawShape shape : delays) {
         shapes.push_back(shape);
-        if (shape.delay_rows != std::floor(shape.delay_rows)) continue;
+        if (!with_filter || shape.delay_rows != std::floor(shape.delay_rows)) continue;
         for (const LawFilter filter : {LawFilter::derivative, LawFilter::measurement})
             for (const double ratio : kRatios) {
                 shape.filter = filter;
@@ -173,12 +179,13 @@ std::vector<LawShape> shapes_to_try(bool own_steps) {
 
 }  // namespace
 
-FoundLaws search_law(const LawSamples& s, const std::vector<char>& used, double least_error, const FoundLaws& start) {
-    Search search(s, used, least_error);
+FoundLaws search_law(const LawSamples& s, const std::vector<char>& used, double least_error, bool other_reading,
+                     const FoundLaws& start) {
+    Search search(s, used, least_error, other_reading);
     const bool own_steps = s.rows_per_sample > 1;
     for (const FoundLaw& law : start) search.try_shape(law.shape);
     if (start.empty()) {
-        for (const LawShape& shape : shapes_to_try(own_steps)) search.try_shape(shape);
+        for (const LawShape& shape : shapes_to_try(own_steps, !other_reading)) search.try_shape(shape);
         refine(search, 60, 1.25, 1.05, own_steps, true);
     }
     refine(search, 15, 1.05, 1.0005, own_steps, start.empty());

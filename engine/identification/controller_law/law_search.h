@@ -24,8 +24,11 @@ using FoundLaws = std::vector<FoundLaw>;
 /// The laws over all structures, filters, delays and error models; empty where no structure has the signs of a
 /// controller. `least_error`: of u in a row, one standard deviation that rounding leaves.
 ///
+/// `other_reading`: the controller reads y without the noise of the record. u is then off for itself in each row (theta
+/// near 1), and a filter would only stand for the missing noise: none is tried.
+///
 /// `start`: laws of a search before on other rows; only their neighbours are looked at then.
 FoundLaws search_law(const LawSamples& samples, const std::vector<char>& used, double least_error,
-                     const FoundLaws& start = {});
+                     bool other_reading = false, const FoundLaws& start = {});
 
 }  // namespace tunewright

@@ -104,7 +104,7 @@ public:
           server_(limits(), application(router_)) {
         add_routes();
         if (config.metrics_listen.empty()) return;
-        add_health_routes(metrics_router_, config.max_body, jobs_, *store_, gate_, memory_,
+        add_health_routes(metrics_router_, config.max_body, config.retention_s, jobs_, *store_, gate_, memory_,
                           [this] { return metrics_.text(standing()); });
         metrics_server_ = std::make_unique<http::Server>(http::ServerLimits(), application(metrics_router_));
     }
@@ -245,7 +245,7 @@ private:
                     http::problem_response(503, "The service has no free memory at the moment. Try again shortly.");
             return refusal;
         });
-        add_health_routes(router_, config_.max_body, jobs_, *store_, gate_, memory_,
+        add_health_routes(router_, config_.max_body, config_.retention_s, jobs_, *store_, gate_, memory_,
                           [this] { return metrics_.text(standing()); });
         if (parse_role(config_.role) != ProcessRole::worker) add_public_routes();
         router_.observe([this](const http::Answered& answered) {

@@ -23,8 +23,8 @@ constexpr const char* kNotYet =
 /// A server that reports the state of the startup.
 class StartupServer {
 public:
-    StartupServer(const std::string& listen, std::size_t max_body) : server_(http::ServerLimits(), application()) {
-        add_liveness_route(router_, max_body);
+    StartupServer(const std::string& listen, const Config& config) : server_(http::ServerLimits(), application()) {
+        add_liveness_route(router_, config.max_body, config.retention_s);
         open_port(server_, listen);
         serving_ = std::jthread([this] { server_.run(); });
     }
@@ -91,10 +91,10 @@ std::unique_ptr<JobStore> open_behind_startup_server(const Config& config, const
         }
     });
     if (store.wait_for(kQuietOpenTime) == std::future_status::ready) return store.get();
-    const StartupServer desk(config.listen, config.max_body);
+    const StartupServer desk(config.listen, config);
     const auto probes = config.metrics_listen.empty()
                             ? nullptr
-                            : std::make_unique<StartupServer>(config.metrics_listen, config.max_body);
+                            : std::make_unique<StartupServer>(config.metrics_listen, config);
     const timespec look{0, std::chrono::nanoseconds(kSignalPollInterval).count()};
     while (store.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
         if (sigtimedwait(&signals, nullptr, &look) > 0) {

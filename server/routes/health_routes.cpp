@@ -23,18 +23,19 @@ Response ready(const JobService& jobs, const JobStore& store, Gate& gate, const 
 
 }  // namespace
 
-void add_liveness_route(http::Router& router, std::size_t max_body) {
+void add_liveness_route(http::Router& router, std::size_t max_body, double retention_s) {
     const std::string alive = std::move(JsonObject()
                                             .text("status", "ok")
                                             .text("version", TUNEWRIGHT_VERSION)
-                                            .number("max_body_bytes", static_cast<std::int64_t>(max_body)))
+                                            .number("max_body_bytes", static_cast<std::int64_t>(max_body))
+                                            .number("retention_s", static_cast<std::int64_t>(retention_s)))
                                   .str();
     router.quick("GET", "/healthz", [alive](const Call&) { return http::json_response(alive); });
 }
 
-void add_health_routes(http::Router& router, std::size_t max_body, const JobService& jobs, const JobStore& store,
-                       Gate& gate, const Memory& memory, std::function<std::string()> metrics) {
-    add_liveness_route(router, max_body);
+void add_health_routes(http::Router& router, std::size_t max_body, double retention_s, const JobService& jobs,
+                       const JobStore& store, Gate& gate, const Memory& memory, std::function<std::string()> metrics) {
+    add_liveness_route(router, max_body, retention_s);
     router.quick("GET", "/readyz", [&](const Call&) { return ready(jobs, store, gate, memory); });
     router.add("GET", "/metrics", [metrics = std::move(metrics)](const Call&) {
         Response response;

@@ -64,11 +64,12 @@ void add_synchronous_routes(http::Router& router, ComputeSlots& turns, Timer& ti
 /// /v1/methods, /v1/controllers, /v1/examples, /openapi.json: constant for the life of the process.
 void add_description_routes(http::Router& router);
 
-/// /healthz, with the largest body of a request that the service takes.
-void add_liveness_route(http::Router& router, std::size_t max_body);
+/// /healthz, with the largest body of a request that the service takes and the time for which it keeps jobs that ended;
+/// 0: without limit.
+void add_liveness_route(http::Router& router, std::size_t max_body, double retention_s);
 
 /// /healthz, /readyz, /metrics. None of them asks the store: they answer while it hangs.
-void add_health_routes(http::Router& router, std::size_t max_body, const JobService& jobs, const JobStore& store,
-                       Gate& gate, const Memory& memory, std::function<std::string()> metrics);
+void add_health_routes(http::Router& router, std::size_t max_body, double retention_s, const JobService& jobs,
+                       const JobStore& store, Gate& gate, const Memory& memory, std::function<std::string()> metrics);
 
 }  // namespace tunewright::server

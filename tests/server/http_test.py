@@ -82,7 +82,8 @@ class HttpTest(unittest.TestCase):
             self.assertEqual(self.service.get("/v1/methods", {"Accept": accept}).status, 200)
 
     def test_the_largest_body_that_healthz_states_is_read_and_one_byte_more_is_413(self):
-        self.assertEqual(self.service.get("/healthz").json["max_body_bytes"], 8 * 1024 * 1024)
+        health = self.service.get("/healthz").json
+        self.assertEqual([health["max_body_bytes"], health["retention_s"]], [8 * 1024 * 1024, 7 * 86400])
         with Service("--max-body", "300KiB") as small:
             self.assertEqual(small.get("/healthz").json["max_body_bytes"], 300 * 1024)
             for service in (self.service, small):

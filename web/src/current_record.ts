@@ -8,8 +8,10 @@ const MAX_CHARACTERS = 2_000_000;
 export function rememberTest(test: IdentifyRequest | null): void {
   try {
     sessionStorage.removeItem(STORED_AS);
+    // Writing a long one only to measure it would halt the page.
+    if (!test || (test.record.csv?.length ?? 0) > MAX_CHARACTERS) return;
     const text = JSON.stringify(test);
-    if (test && text.length <= MAX_CHARACTERS) sessionStorage.setItem(STORED_AS, text);
+    if (text.length <= MAX_CHARACTERS) sessionStorage.setItem(STORED_AS, text);
   } catch {
     // Without storage or room the record is lost on a reload; nothing else depends on it.
   }

@@ -52,6 +52,17 @@ export function closesItself(menu: HTMLDetailsElement): HTMLDetailsElement {
   return menu;
 }
 
+/** An optional card, which is folded at first where it would push others off a small screen. */
+export function foldedOnPhones(title: string, aside: string, ...content: Child[]): HTMLElement {
+  const heading = h("h2", { id: uniqueId("card") }, `${title} `, h("span", { class: "optional" }, aside));
+  const open = !window.matchMedia("(max-width: 700px)").matches;
+  return h(
+    "section",
+    { class: "card optional-card", "aria-labelledby": heading.id },
+    h("details", { open }, h("summary", {}, heading), h("div", { class: "stack" }, content)),
+  );
+}
+
 /** A description of a node outside HTML: formulas and plots are built from it before they enter the page. */
 export interface TreeNode {
   tag: string;

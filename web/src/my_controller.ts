@@ -32,9 +32,11 @@ export function implementOf(mine: MyController | null): (Implement & { product: 
   };
 }
 
+type Spans = Pick<Implement, "product" | "y_span" | "u_span" | "sample_time">;
+
 /** The same product with the same spans and sample time. */
-export function sameImplement(a: Implement | null | undefined, b: Implement | null | undefined): boolean {
-  const told = (implement: Implement | null | undefined): string =>
+export function sameImplement(a: Spans | null | undefined, b: Spans | null | undefined): boolean {
+  const told = (implement: Spans | null | undefined): string =>
     JSON.stringify(
       implement ? [implement.product, implement.y_span, implement.u_span, implement.sample_time].map((x) => x ?? null) : null,
     );
@@ -66,7 +68,7 @@ function unasked({ product, name, needs, y_span, u_span, units }: MyController):
   };
 }
 
-/** For a loop in these units: numbers given in other units are dropped. An unnamed unit may be any. */
+/** For a loop in these units: numbers given in other units are dropped. An unnamed unit may be any, and is kept in mind. */
 export function inUnits(mine: MyController | null, units: UnitNames): MyController | null {
   const { y_span, u_span, sample_time, units: given, ...rest } = mine ?? {};
   if (!mine || !given) return mine;
@@ -76,7 +78,7 @@ export function inUnits(mine: MyController | null, units: UnitNames): MyControll
     ...(y_span && fits("y") ? { y_span } : {}),
     ...(u_span && fits("u") ? { u_span } : {}),
     ...(sample_time !== undefined && fits("time") ? { sample_time } : {}),
-    units,
+    units: { time: units.time || given.time, u: units.u || given.u, y: units.y || given.y },
   };
 }
 

@@ -1,4 +1,8 @@
 // Hash routes: the server needs no rewriting, and a plant never appears in an access log.
+import type { StartTexts } from "./views/start.ts";
+
+/** Longer links are cut by mail and chat programs. */
+const MAX_LINK = 4000;
 
 export type Route =
   | { screen: "start" }
@@ -74,17 +78,31 @@ export function parseRoute(hash: string): Route {
   return { screen: "start" };
 }
 
+/** With the plant, and what is told about its loop as far as the link stays short. */
+function formatPlant({ screen, plant, values }: Extract<Route, { screen: "new" | "relay" }>): string {
+  const told = Object.entries(values).filter(([, value]) => value !== "");
+  const address = (entries: [string, string][]): string => {
+    const query = new URLSearchParams(entries).toString();
+    return `#/${screen}${plant === "" ? "" : `/${encodeURIComponent(plant)}`}${query ? `?${query}` : ""}`;
+  };
+  for (const left of [/^$/, /^rest$/, /^(rest|how)\b/, /^(rest|how|today)\b/]) {
+    const short = address(told.filter(([name]) => !left.test(name)));
+    if (short.length <= MAX_LINK) return short;
+  }
+  return address(told.filter(([name]) => !ABOUT_LOOP.test(name)));
+}
+
+/** Names in an address that tell about the loop and not about its plant. */
+export const ABOUT_LOOP = /^(loop|today|controller|how|rest)\b/;
+
 /** The hash that parseRoute reads back as the same route. */
 export function formatRoute(route: Route): string {
   switch (route.screen) {
     case "start":
       return "#/";
     case "new":
-    case "relay": {
-      const query = new URLSearchParams(Object.entries(route.values).filter(([, value]) => value !== "")).toString();
-      const plant = route.plant === "" ? "" : `/${encodeURIComponent(route.plant)}`;
-      return `#/${route.screen}${plant}${query ? `?${query}` : ""}`;
-    }
+    case "relay":
+      return formatPlant(route);
     case "identify":
       return route.job === null ? "#/identify" : `#/jobs/${encodeURIComponent(route.job)}/identify`;
     case "range":
@@ -128,13 +146,28 @@ function stillAt(from: Route): boolean {
 
 /** Rewrites the address without a step in the history. `from`: the screen that the page shows. */
 export function rewriteAddress(from: Route, next: Route): void {
-  if (stillAt(from)) history.replaceState(null, "", formatRoute(next));
+  if (stillAt(from)) history.replaceState(history.state, "", formatRoute(next));
+}
+
+/** What this entry of the history keeps, beside its address: it is there after Back and after a reload. */
+export interface EntryState {
+  /** How it filled the form. */
+  fill?: string;
+  /** The content of the form. */
+  start?: StartTexts;
+}
+
+export const entryState = (): EntryState => (history.state ?? {}) as EntryState;
+
+/** `from`: the screen that the page shows. */
+export function keepInEntry(from: Route, state: EntryState): void {
+  if (stillAt(from)) history.replaceState({ ...entryState(), ...state }, "");
 }
 
 /** Adds a step to the history without leaving the screen: Back leads to `before`. */
 export function stepAddress(from: Route, before: Route, next: Route): void {
   if (!stillAt(from)) return;
-  history.replaceState(null, "", formatRoute(before));
+  history.replaceState(history.state, "", formatRoute(before));
   history.pushState(null, "", formatRoute(next));
 }
 

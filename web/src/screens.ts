@@ -7,7 +7,7 @@ import { h } from "./dom.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
 import type { JobFlow } from "./job_flow.ts";
 import type { RangeView } from "./range/view.ts";
-import { addressOfJob, formatRoute, parseRoute, rewriteAddress, showsJob, showsStart } from "./routes.ts";
+import { addressOfJob, entryState, formatRoute, keepInEntry, parseRoute, rewriteAddress, showsJob, showsStart } from "./routes.ts";
 import type { JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 import type { CandidateChoice } from "./views/cards/candidates_card.ts";
@@ -53,6 +53,7 @@ export function screens(
   function mount(next: View, title: string, focus: boolean): void {
     if (view !== next) {
       if (view && view !== start && view !== relay && view !== range) view.dispose();
+      if (next === start) start.takeBack();
       view = next;
       stage.replaceChildren(next.element);
       window.scrollTo(0, 0);
@@ -79,12 +80,38 @@ export function screens(
         relayOf = { units: startScreen().units(), loop: startScreen().loops() };
         location.hash = formatRoute({ screen: "relay", plant: form, values });
       },
-      onModel: (form, values) => typed(showsStart, { screen: "new", plant: form, values }),
+      onChange: startChanged,
     });
     // Read before it is needed, as soon as somebody works here.
     for (const event of ["pointerdown", "focusin", "dragenter"])
       start.element.addEventListener(event, () => void loadDesign().catch(() => undefined), { once: true });
     return start;
+  }
+
+  /** The content of the form stays with this entry of the history. */
+  function keepStart(): void {
+    const { route } = store.get();
+    if (start && (showsStart(route) || route.screen === "identify")) keepInEntry(route, { start: start.texts() });
+  }
+
+  /** And in the address, as far as that can hold it. */
+  function startChanged(): void {
+    const address = showsStart(store.get().route) ? start?.address() : null;
+    if (address) typed(showsStart, { screen: "new", ...address });
+    keepStart();
+  }
+
+  /** After Back, or a reload: the form as this entry of the history left it. False if it left none. */
+  function restoreStart(): boolean {
+    const { start: texts } = entryState();
+    if (!texts) return false;
+    const shown = startScreen();
+    if (JSON.stringify(texts) !== JSON.stringify(shown.texts())) {
+      shown.restore(texts);
+      const { test } = store.get();
+      if (texts.kind === "record" && test) shown.loadRecord(test.record, test.identify);
+    }
+    return true;
   }
 
   /** A screen in a file of its own, which most visits do not need; null if another is shown by now, or if it cannot
@@ -137,7 +164,9 @@ export function screens(
 
   /** The result of Identify is tuned with the methods and settings of Start. */
   async function tuneSubject(subject: TuneSubject, all: boolean): Promise<FieldError[]> {
+    await startScreen().settled();
     const { request, faults } = startScreen().compose(subject, all);
+    startScreen().mark(faults);
     if (faults.length > 0) return faults;
     const job = await postJob(request);
     startScreen().endLoop();
@@ -152,7 +181,8 @@ export function screens(
     if (typeof test === "string") return mount(part.noRecordView(test), "Identify · Tunewright", focus);
     const address = location.hash;
     const first = remembered?.address === address ? remembered.choice : { structure: "", region };
-    const view = part.identifyView(test, { methods: startScreen().methods(), first }, announce, {
+    const view = part.identifyView(test, { ofLoop: startScreen().ofLoop, methods: startScreen().methods(), first }, announce, {
+      onLoop: startScreen().offerRecord,
       onRemember(choice) {
         remembered = { address, choice };
       },
@@ -163,6 +193,7 @@ export function screens(
       onTune: tuneSubject,
     });
     mount(view, "Identify · Tunewright", focus);
+    keepStart();
   }
 
   /** A job's record, with the methods and settings of its request. */
@@ -202,22 +233,26 @@ export function screens(
   }
 
   /** Identifies the content of the form; a reload of the page starts again. */
-  const fillMark = (): string => `${performance.timeOrigin}/${fills}`;
+  const fillMark = (): string => `${performance.timeOrigin}/${fills}/${startScreen().loops()}`;
 
   /** An entry of the history remembers how it filled the form: Back finds the text typed since then. */
   function fillForEntry(request: TuningRequest, example: boolean): void {
     fillForm(request, example);
-    history.replaceState({ fill: fillMark() }, "");
+    restoreStart();
+    keepInEntry(store.get().route, { fill: fillMark() });
+    keepStart();
   }
 
-  const isAsLeft = (): boolean => (history.state as { fill?: string } | null)?.fill === fillMark();
+  const isAsLeft = (): boolean => entryState().fill === fillMark();
 
   async function loadForm(route: Route): Promise<void> {
+    if (isAsLeft()) return void restoreStart();
+    if ((route.screen === "new" || route.screen === "start") && restoreStart()) return;
     if (route.screen === "new") {
       fills += 1;
       startScreen().loadTyped(route.plant, route.values);
+      keepStart();
     }
-    if (isAsLeft()) return;
     try {
       if (route.screen === "edit") {
         const known = store.get().job;
@@ -312,8 +347,9 @@ export function screens(
     if (route.screen === "identify") {
       if (route.job !== null) return void openJobRecord(route.job, !first);
       const test = before.test;
-      // After a reload, name, units and record come from the form's.
-      if (first && test) fillForm({ ...test });
+      // After a reload the record comes from the tab's memory.
+      if (first && test && !entryState().start) fillForm({ ...test });
+      restoreStart();
       return void openIdentify(route, test ?? "", !first);
     }
     if (route.screen === "range") return void openRange(route, !first);

@@ -267,7 +267,7 @@ TuningMethod robust_method() {
     method.title = "Robust optimum";
     method.formula =
         "minimise the integral of |e| after a load step subject to max |S| <= Ms, max |T| <= Mt and a stable loop";
-    method.source = "Garpinger and Hagglund (2008), A software tool for robust PID design, IFAC World Congress";
+    method.source = "Garpinger and Hägglund (2008), A software tool for robust PID design, IFAC World Congress";
     method.needs = "any linear plant";
     method.validity = "Ms, Mt in (1, " + text(limits::kMaxMs) +
                       "]; a finite optimum needs a dead time, a right-half-plane zero, a fixed filter time or a limit "

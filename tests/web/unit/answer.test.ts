@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { isOfLoop, namesOf, usualSpan } from "../../../web/src/words/record_names.ts";
-import type { IdentifiedController, Preview } from "../../../web/src/api/types.ts";
-import { foundWords } from "../../../web/src/words/settings.ts";
+import type { ControllerInRecord, Preview, Product } from "../../../web/src/api/types.ts";
+import { foundWords } from "../../../web/src/words/found.ts";
 
 const preview = (columns: [heading: string, guess: string, unit: string][]): Pick<Preview, "columns"> => ({
   columns: columns.map(([heading, guess, unit]) => ({ heading, guess, unit })) as Preview["columns"],
@@ -38,13 +38,25 @@ test("a record of a loop has a set point, a measurement and an output", () => {
   for (const left of ["SP", "PV", "OP"]) assert.ok(!isOfLoop(preview(trend.filter(([heading]) => heading !== left))), left);
 });
 
-test("settings found in a record are written with their errors and remarks", () => {
-  const found = {
-    controller: { form: "ideal", Kp: 0.8, Ti: 60, Td: 1e-5 },
-    standard_errors: { Kp: 0.01, Ti: 1.5, Td: 2e-5 },
-    warnings: [{ detail: "Kp is uncertain." }],
-  } as unknown as IdentifiedController;
-  assert.equal(foundWords(found, "s"), "Kp 0.800 ± 0.010, Ti 60.0 ± 1.5 s. Kp is uncertain.");
-  assert.equal(foundWords({ ...found, warnings: [] }, ""), "Kp 0.800 ± 0.010, Ti 60.0 ± 1.5.");
-  assert.equal(foundWords({ ...found, standard_errors: {}, warnings: [] }, "min"), "Kp 0.8, Ti 60 min, Td 1.000e−5 min.");
+test("settings found in a record are written with their errors and remarks, in the product's own names where it has them", () => {
+  const found = (identified: object, rest: object = {}): ControllerInRecord =>
+    ({
+      identified: { controller: { form: "ideal", Kp: 0.8, Ti: 60, Td: 1e-5 }, warnings: [], standard_errors: { Kp: 0.01, Ti: 1.5, Td: 2e-5 }, ...identified },
+      ...rest,
+    }) as unknown as ControllerInRecord;
+  const uncertain = found({ warnings: [{ detail: "Kp is uncertain." }] });
+  assert.equal(foundWords(uncertain, null, "s"), "From the record: Kp 0.800 ± 0.010, Ti 60.0 ± 1.5 s. Kp is uncertain.");
+  assert.equal(foundWords(found({ standard_errors: {} }), null, "min"), "From the record: Kp 0.8, Ti 60 min, Td 1.000e−5 min.");
+  const parameters = ["GAIN", "Reset", "FORM"].map((label) => ({ name: label.toUpperCase(), label, low: null, high: null, resolution: null }));
+  const product = { action: {}, parameters } as unknown as Product;
+  const typing = {
+    as_typed: { FORM: "Standard", RESET: "60.0", GAIN: "1.60" },
+    units: { GAIN: "%/%", RESET: "s" },
+    standard_errors: { RESET: 1.5, GAIN: 0.02 },
+  };
+  assert.equal(foundWords(found({}, { typing }), product, "s"), "From the record: GAIN 1.60 ± 0.020 %/%, Reset 60.0 ± 1.5 s.");
+  assert.equal(
+    foundWords(found({}, { not_typed: "The block has no filter." }), product, "s"),
+    "From the record: Kp 0.800 ± 0.010, Ti 60.0 ± 1.5 s. The block has no filter.",
+  );
 });

@@ -5,7 +5,9 @@ import { defaultOverlay, entryNames } from "../../../web/src/charts/drawn.ts";
 import { byAllMethods, withLambda } from "../../../web/src/form/tuning_request.ts";
 import { csvText } from "../../../web/src/plot/export.ts";
 import { spark } from "../../../web/src/plot/spark.ts";
+import { linkOf } from "../../../web/src/form/link.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
+import { durationWords, keptWords } from "../../../web/src/words/kept_for.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
 import {
   excessText,
@@ -247,4 +249,55 @@ test("a sparkline is one line in its box, whatever the data", () => {
     assert.equal(paths.length, 2);
     for (const path of paths) assert.doesNotMatch(path, /NaN|Infinity/);
   }
+});
+
+test("a link holds a request's model, units, controller, today's settings and options, and its length is bounded", () => {
+  const request = {
+    name: "TIC-101",
+    units: { time: "min", y: "degC" },
+    plant: { type: "fopdt", K: 1.25, T: 40, L: 8 },
+    tune: [{ method: "robust", Ms: 1.6, Mt: 1.4 }, { method: "simc" }],
+    baseline: { form: "parallel", Kp: 1.2, Ki: 0.03, Kd: null, b: 0.5, filter: { type: "derivative", Tf: 2 } },
+    implement: { product: "emerson_deltav_standard", y_span: [0, 200] as [number, number], sample_time: 0.5, computation_delay: 0.1 },
+    evaluate: { setpoint_step: 7 },
+  };
+  const link = linkOf(request)!;
+  assert.deepEqual(link.values, {
+    K: "1.25",
+    T: "40",
+    L: "8",
+    "loop.name": "TIC-101",
+    "loop.time": "min",
+    "loop.y": "degC",
+    controller: "emerson_deltav_standard",
+    "controller.y": "0..200",
+    "controller.sample_time": "0.5",
+    "today.form": "parallel",
+    "today.1": "1.2",
+    "today.2": "0.03",
+    "today.Tf": "2",
+    "today.rest": '{"b":0.5}',
+    how: "robust simc",
+    "how.robust": '{"Ms":1.6,"Mt":1.4}',
+    rest: '{"evaluate":{"setpoint_step":7},"implement":{"computation_delay":0.1}}',
+  });
+  const hash = formatRoute(link);
+  assert.deepEqual(parseRoute(hash), link);
+  assert.ok(hash.length < 700, hash);
+  // What is too long for mail and chat loses options before today's settings, and the plant last.
+  const long = parseRoute(formatRoute({ ...link, values: { ...link.values, rest: "x".repeat(5000) } }));
+  assert.deepEqual(long, { ...link, values: Object.fromEntries(Object.entries(link.values).filter(([name]) => name !== "rest")) });
+  const longer = parseRoute(formatRoute({ ...link, values: { ...link.values, "how.robust": "x".repeat(5000) } }));
+  assert.ok(longer.screen === "new" && longer.values["today.1"] === "1.2" && longer.values["how"] === undefined);
+  assert.equal(linkOf({ record: { csv: "t,u,y" }, tune: "all" }), null);
+  const typed = linkOf({ plant: request.plant, baseline: { product: "p", settings: { GAIN: 1.5, ON: true } } })!;
+  assert.deepEqual([typed.values["today.form"], typed.values["today.set.GAIN"], typed.values["today.set.ON"]], ["own", "1.5", "true"]);
+});
+
+test("a link to a job says how long it works", () => {
+  assert.deepEqual([604800, 86400, 129600, 90, 1].map(durationWords), ["7 days", "1 day", "36 hours", "90 seconds", "1 second"]);
+  assert.match(keptWords("2026-03-02T08:00:00Z", 604800), /^The link works until .*9.*2026.*: the service keeps a job for 7 days after its end\.$/);
+  assert.match(keptWords(null, 3600), /for 1 hour after its end/);
+  assert.match(keptWords(null, 0), /without limit/);
+  assert.doesNotMatch(keptWords("2026-03-02T08:00:00Z", undefined), /undefined|NaN|Invalid/);
 });

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { latest, newest } from "../../../web/src/api/latest.ts";
+import { bodyOf, decoded } from "../../../web/src/api/client.ts";
 
 const settle = (): Promise<void> => new Promise((resolve) => setImmediate(resolve));
 
@@ -127,4 +128,15 @@ test("of work that is begun again only the newest is, and each begins its own", 
   assert.deepEqual([first(), second()], [false, true]);
   newest()();
   assert.ok(second(), "another kind of work");
+});
+
+test("a body with a record of megabytes is written in slices, as JSON.stringify writes it", async () => {
+  const csv = `t,u,y\n"${"0,1,2\n".repeat(90_000)}\\ \u0001 😀`.padEnd(1_499_999, "x") + "😀".repeat(3);
+  for (const body of [{ name: "a", record: { csv, columns: { t: "t" } }, tune: "all" }, { csv, dt: 1 }, { record: { csv: "t,u,y" } }, { units: {} }]) {
+    const sent = await bodyOf(body);
+    assert.equal(sent instanceof Blob, JSON.stringify(body).length > 1000);
+    assert.deepEqual(JSON.parse(sent instanceof Blob ? await sent.text() : (sent as string)), body);
+  }
+  const bytes = new TextEncoder().encode(csv).buffer;
+  assert.equal(await decoded(bytes, "utf-8"), csv);
 });

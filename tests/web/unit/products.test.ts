@@ -318,7 +318,7 @@ test("what a job was made for is shown; ranges that the product does not need st
 
 test("ranges and sample time that were given in other units are not taken for this loop", () => {
   const given: MyController = { ...MINE, units: { time: "s", u: "%", y: "°C" } };
-  assert.deepEqual(inUnits(given, { time: "s", u: "", y: "°C" }), { ...MINE, units: { time: "s", u: "", y: "°C" } });
+  assert.deepEqual(inUnits(given, { time: "s", u: "", y: "°C" }), { ...MINE, units: { time: "s", u: "%", y: "°C" } }, "they are still in %");
   const other = inUnits(given, { time: "min", u: "%", y: "bar" })!;
   assert.deepEqual([other.sample_time, other.y_span, other.u_span], [undefined, undefined, [0, 100]]);
   assert.deepEqual(missingOf(other), ["y_span"]);

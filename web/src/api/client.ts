@@ -100,6 +100,42 @@ async function answerOf(
   return answer;
 }
 
+/** Longer texts are written in slices: the page would not react while it writes millions of characters. */
+const SLICE = 250_000;
+
+/** The page draws and reacts in between. */
+const pause = (): Promise<void> => new Promise((over) => setTimeout(over, 0));
+
+/** JSON of a body, whose record may be a text of megabytes. */
+export async function bodyOf(body: unknown): Promise<BodyInit> {
+  if (body instanceof Blob) return body;
+  const { record, csv: bare } = (body ?? {}) as { record?: { csv?: string }; csv?: string };
+  const csv = record?.csv ?? bare;
+  if (typeof csv !== "string" || csv.length <= SLICE) return JSON.stringify(body);
+  // It stands last, where its beginning is known.
+  const { csv: _csv, ...others } = (record ?? body) as Record<string, unknown>;
+  const inside = { ...others, csv: "" };
+  const { record: _record, ...around } = body as Record<string, unknown>;
+  const head = JSON.stringify(record ? { ...around, record: inside } : inside);
+  const parts: string[] = [head.slice(0, record ? -3 : -2)];
+  for (let at = 0; at < csv.length; at += SLICE) {
+    parts.push(JSON.stringify(csv.slice(at, at + SLICE)).slice(1, -1));
+    await pause();
+  }
+  return new Blob([...parts, record ? '"}}' : '"}'], { type: "application/json" });
+}
+
+/** A text of megabytes, as `encoding` says. */
+export async function decoded(bytes: ArrayBuffer, encoding: string): Promise<string> {
+  const decoder = new TextDecoder(encoding);
+  let text = "";
+  for (let at = 0; at < bytes.byteLength; at += SLICE) {
+    text += decoder.decode(new Uint8Array(bytes, at, Math.min(SLICE, bytes.byteLength - at)), { stream: true });
+    if (bytes.byteLength > SLICE) await pause();
+  }
+  return text + decoder.decode();
+}
+
 /** Addresses are relative to the page, so that it works behind a path prefix. */
 async function send(
   method: string,
@@ -118,7 +154,7 @@ async function send(
         ...(key === null ? {} : { Authorization: `Bearer ${key}` }),
         ...headers,
       },
-      ...(body === undefined ? {} : { body: body instanceof Blob ? body : JSON.stringify(body) }),
+      ...(body === undefined ? {} : { body: await bodyOf(body) }),
       ...(signal ? { signal } : {}),
     });
     const text = response.status === 304 ? "" : await response.text();

@@ -162,6 +162,7 @@ export type components = {
       status: string;
       version?: string;
       max_body_bytes?: number;
+      retention_s?: number;
     };
     TuningRequest: {
       name?: string;

@@ -1,6 +1,6 @@
 // Preview of a file of a recorded test: the service reads it before anything is computed.
-import { call } from "./client.ts";
-import type { Health, IdentifiedController, Preview, RecordedTest } from "./types.ts";
+import { call, decoded } from "./client.ts";
+import type { ControllerInRecord, Health, Implement, Preview, RecordedTest, Units } from "./types.ts";
 
 /** The problems' pointers are those of a request with a record. */
 const previewed = (data: unknown): Preview => {
@@ -11,11 +11,14 @@ const previewed = (data: unknown): Preview => {
   };
 };
 
-/** Bytes of the largest body that the service takes; infinite if it does not say: then its refusal tells. */
-export async function maxBodyBytes(): Promise<number> {
-  const health = await call("GET", "healthz").catch(() => null);
-  return (health?.data as Health | undefined)?.max_body_bytes ?? Infinity;
+/** What the service says about itself; null if it does not answer. */
+export async function getHealth(): Promise<Health | null> {
+  const reply = await call("GET", "healthz").catch(() => null);
+  return (reply?.data as Health | undefined) ?? null;
 }
+
+/** Bytes of the largest body that the service takes; infinite if it does not say: then its refusal tells. */
+export const maxBodyBytes = async (): Promise<number> => (await getHealth())?.max_body_bytes ?? Infinity;
 
 export interface FileRead {
   /** Decoded with the encoding that the service found. */
@@ -30,7 +33,7 @@ export async function previewFile(file: Blob): Promise<FileRead> {
     file.arrayBuffer(),
   ]);
   const preview = previewed(data);
-  return { text: new TextDecoder(preview.encoding).decode(bytes), preview };
+  return { text: await decoded(bytes, preview.encoding), preview };
 }
 
 /** A record's text with the choices for reading it. */
@@ -40,8 +43,13 @@ export async function previewRecord({ csv, columns, dt, time_unit, u_step, run }
   return previewed((await call("POST", "v1/records/preview", request)).data);
 }
 
-/** Today's settings in the record of a loop in automatic; a refusal says why there are none. */
-export async function controllerInRecord(record: RecordedTest): Promise<IdentifiedController> {
-  const { data } = await call("POST", "v1/records/controller", { record });
-  return (data as { identified: IdentifiedController }).identified;
+/** Today's settings in the record of a loop in automatic, and as typed into the product if it is given; a refusal says
+    why there are none. */
+export async function controllerInRecord(
+  record: RecordedTest,
+  implement: Implement | null,
+  units: Units | undefined,
+): Promise<ControllerInRecord> {
+  const body = { record, ...(units ? { units } : {}), ...(implement ? { implement } : {}) };
+  return (await call("POST", "v1/records/controller", body)).data as ControllerInRecord;
 }

@@ -20,7 +20,6 @@ export type {
   FrequencyPoint,
   Frontier,
   Health,
-  IdentifiedController,
   Implemented,
   JobList,
   JobOutline as Outline,
@@ -97,6 +96,12 @@ export interface TuningRequest extends Pick<Contract.TuningRequest, "name" | "un
   evaluate?: Partial<Contract.Evaluate> & Record<string, unknown>;
   [key: string]: unknown;
 }
+/** Today's settings as the service finds them in a record. */
+export type IdentifiedController = Contract.IdentifiedController & { certain?: boolean };
+export type ControllerInRecord = Omit<Contract.ControllerRecordAnswer, "identified" | "typing"> & {
+  identified: IdentifiedController;
+  typing?: Contract.SettingsAnswer & { standard_errors?: Record<string, number> };
+};
 export type IdentifyRequest = Pick<TuningRequest, "name" | "units" | "identify"> & Pick<Contract.IdentifyRequest, "record">;
 
 /** From the service, or from the page if the service cannot be reached. */

@@ -39,3 +39,13 @@ export function keptNote(about: string, onForget: () => void): KeptNote {
     },
   };
 }
+
+/** An object that was written as JSON, perhaps by hand; an empty one if it was not. */
+export function objectOf(json: string | undefined): Record<string, unknown> {
+  try {
+    const read: unknown = JSON.parse(json || "{}");
+    return typeof read === "object" && read !== null && !Array.isArray(read) ? (read as Record<string, unknown>) : {};
+  } catch {
+    return {};
+  }
+}

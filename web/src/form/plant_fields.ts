@@ -26,11 +26,14 @@ export interface PlantFields {
   beginLoop(): void;
   /** True if this input is the line for a plant, not a parameter. */
   isLine(input: EventTarget | null): boolean;
-  /** The form's id and the texts as typed, for the address. */
+  /** The form's id and the texts as typed, for the address: those of its fields, and the line (`LINE`) if the plant
+      was typed in it. */
   typed(): { form: string; values: Record<string, string> };
   setUnits(units: UnitNames): void;
 }
 
+/** The name of the typed line among the texts of an address. */
+export const LINE = "line";
 const INCOMPLETE = "The formula appears when the numbers are complete.";
 
 /** `active`: returns true if a request that is sent now is about these fields' plant. */
@@ -81,7 +84,8 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
     onBusy: setBusy,
     onAnswer(answer, question) {
       if (question.text === undefined) {
-        if (answer.text !== undefined) line.input.value = answer.text;
+        // A line that was typed since then stays.
+        if (answer.text !== undefined && !fromLine) line.input.value = answer.text;
       } else if (question.text === line.input.value) {
         fault = answer.plant ? null : (answer.fault ?? "");
         if (answer.plant) showPlant(answer.plant);
@@ -201,15 +205,18 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
     loadTyped(id, values) {
       const match = PLANT_FORMS.find((candidate) => candidate.id === id);
       if (!match) return;
-      choose(match, Object.keys(values).length > 0 ? values : examples(match));
-      askFields();
+      const { [LINE]: text, ...others } = values;
+      choose(match, match.fields.some(({ name }) => name in others) ? others : examples(match));
+      if (!text) return askFields();
+      line.input.value = text;
+      askText();
     },
     beginLoop() {
       const known = fields.find((item) => item.name === "uncertainty")?.field.input;
       if (known && known !== document.activeElement) known.value = "";
     },
     isLine: (input) => input === line.input,
-    typed: () => ({ form: form.id, values: texts() }),
+    typed: () => ({ form: form.id, values: { ...texts(), ...(fromLine ? { [LINE]: line.input.value } : {}) } }),
     setUnits(next) {
       const changed = next.time !== units.time;
       units = next;

@@ -9,18 +9,24 @@ import type { SettingField, SettingsReading } from "./product_settings.ts";
 
 export interface ProductFields {
   element: HTMLElement;
-  /** Replaces the fields for another product; texts of parameters with the same name are kept. */
+  /** Replaces the fields for another product; the texts of those that it has not are kept for their return. */
   setProduct(product: Product | null): void;
   load(settings: Record<string, SettingValue>): void;
+  isEmpty(): boolean;
+  /** As typed, by the parameters' names. */
+  texts(): Record<string, string>;
+  setTexts(texts: Record<string, string>): void;
   read(): SettingsReading;
 }
 
 export function productFields(errors: FormErrors, active: () => boolean): ProductFields {
   let product: Product | null = null;
+  /** Of fields that are not there now. */
+  let others: Record<string, string> = {};
   let fields: { name: string; field: Field<HTMLInputElement> | Field<HTMLSelectElement> }[] = [];
   const main = h("div", { class: "fields" });
-  const others = h("div", { class: "fields" });
-  const more = h("details", { hidden: true }, h("summary", {}, "Other parameters"), others);
+  const folded = h("div", { class: "fields" });
+  const more = h("details", { hidden: true }, h("summary", {}, "Other parameters"), folded);
   const element = h("div", { class: "product-fields" }, main, more);
 
   function make(spec: SettingField): Field<Control["input"]> {
@@ -44,24 +50,31 @@ export function productFields(errors: FormErrors, active: () => boolean): Produc
     for (const { name, field } of fields) field.input.value = typed[name] ?? "";
   }
 
+  /** Also for fields that come later. */
+  function setTexts(typed: Record<string, string>): void {
+    others = typed;
+    write(typed);
+  }
+
   return {
     element,
     setProduct(next) {
       if (next?.id === product?.id) return;
-      const typed = texts();
+      others = { ...others, ...texts() };
       product = next;
       for (const { field } of fields) errors.remove(field.control);
       const specs = next ? settingFields(next) : [];
       const made = specs.map((spec) => ({ spec, name: spec.name, field: make(spec) as (typeof fields)[number]["field"] }));
       fields = made;
       main.replaceChildren(...made.filter(({ spec }) => spec.main).map(({ field }) => field.element));
-      others.replaceChildren(...made.filter(({ spec }) => !spec.main).map(({ field }) => field.element));
-      more.hidden = others.childElementCount === 0;
-      write(typed);
+      folded.replaceChildren(...made.filter(({ spec }) => !spec.main).map(({ field }) => field.element));
+      more.hidden = folded.childElementCount === 0;
+      write(others);
     },
-    load(settings) {
-      write(typedSettings(settings));
-    },
+    load: (settings) => setTexts(typedSettings(settings)),
+    texts,
+    setTexts,
+    isEmpty: () => Object.values(texts()).every((text) => text.trim() === ""),
     read: () => (product ? readSettings(product, texts()) : { settings: undefined, errors: [] }),
   };
 }

@@ -18,6 +18,8 @@ export interface SettingField {
 
 /** Roles of parameters that do not affect today's linear law. */
 const ASIDE = ["limit", "fixed"];
+/** Roles of those that every loop has, typed or not. */
+const ALWAYS = ["gain", "integral", "derivative"];
 
 /** One field per parameter, and one for the direction if a switch sets it. */
 export function settingFields(product: Product): SettingField[] {
@@ -39,7 +41,7 @@ function fieldOf(parameter: ProductParameter): SettingField {
     // A switch that has only one position in this product is a choice among one.
     choices: choices?.map((choice) => choice.value) ?? (typeof standard === "boolean" ? [standard] : []),
     standard: standard === undefined ? "" : String(standard),
-    main: written && !ASIDE.includes(role),
+    main: ALWAYS.includes(role) || (written && !ASIDE.includes(role)),
     hint: remark ?? "",
   };
 }

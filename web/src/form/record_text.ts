@@ -39,9 +39,14 @@ export function recordText(options: ControlOptions, errors: FormErrors): RecordT
       input.value = text;
       return;
     }
-    const lines = text.split("\n");
-    input.value = lines.slice(0, LINES_SHOWN).join("\n");
-    words.textContent = `The first ${LINES_SHOWN} of ${lines.length} lines; all of them are used.`;
+    let lines = 1;
+    let end = text.length;
+    for (let at = text.indexOf("\n"); at >= 0; at = text.indexOf("\n", at + 1)) {
+      if (lines === LINES_SHOWN) end = at;
+      lines += 1;
+    }
+    input.value = text.slice(0, end);
+    words.textContent = `The first ${LINES_SHOWN} of ${lines} lines; all of them are used.`;
   }
 
   function empty(): void {

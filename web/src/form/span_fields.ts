@@ -20,6 +20,9 @@ export interface SpanFields {
   setUnit(unit: string): void;
   /** Neither end has a text. */
   isEmpty(): boolean;
+  /** "0..200", as typed; "" if it is empty. */
+  text(): string;
+  setText(text: string): void;
 }
 
 export function spanFields(
@@ -39,6 +42,8 @@ export function spanFields(
     h("div", { class: "ends" }, low.element, high.element),
   );
 
+  const isEmpty = (): boolean => ends.every((end) => end.input.value.trim() === "");
+
   return {
     element,
     read() {
@@ -51,7 +56,12 @@ export function spanFields(
     setUnit(text) {
       unit.textContent = text ? ` (${text})` : "";
     },
-    isEmpty: () => ends.every((end) => end.input.value.trim() === ""),
+    isEmpty,
+    text: () => (isEmpty() ? "" : ends.map((end) => end.input.value.trim()).join("..")),
+    setText(text) {
+      const typed = text.split("..");
+      ends.forEach((end, index) => (end.input.value = typed[index] ?? ""));
+    },
   };
 }
 

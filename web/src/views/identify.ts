@@ -3,7 +3,7 @@ import { ApiError } from "../api/client.ts";
 import { identify } from "../api/plants.ts";
 import { previewRecord } from "../api/records.ts";
 import { latest, newest } from "../api/latest.ts";
-import type { FieldError, IdentifyRequest, Model } from "../api/types.ts";
+import type { FieldError, IdentifyRequest, Model, RecordedTest } from "../api/types.ts";
 import { bareRecordFrame, identifiedFrame } from "../charts/identified.ts";
 import { stepParts } from "../charts/record.ts";
 import type { Samples } from "../charts/record.ts";
@@ -29,6 +29,8 @@ import type { View } from "./start.ts";
 
 /** Options for tuning the record. */
 export interface TuningChoice {
+  /** The cards of the controller and of today's settings. */
+  ofLoop: HTMLElement;
   /** Names of the methods chosen on Start. */
   methods: string[];
   first: CandidateChoice;
@@ -37,6 +39,8 @@ export interface TuningChoice {
 export interface IdentifyEvents {
   /** The record and the options for reading it, whenever the reader changes something. */
   onChange(request: IdentifyRequest): void;
+  /** The record of a loop in automatic, as it was identified; null: of another. */
+  onLoop(record: RecordedTest | null): void;
   /** Starts a tuning job; returns the faults that prevent it. */
   /** `all`: by every method. */
   onTune(subject: TuneSubject, all: boolean): Promise<FieldError[]>;
@@ -59,8 +63,8 @@ export function identifyView(
   let whole: Samples | null = null;
   let samples = samplesOf(given.record);
   const givenText = csvOf(given.record);
-  /** The request for the current extent; null before any request. */
-  let askedExtent: string | null = null;
+  /** The text and the reading of the current extent; null before any request. */
+  let askedExtent: [text: string, reading: string] | null = null;
   let plot: Plot | null = null;
   let plotTitle = "";
   const beginLook = newest();
@@ -102,6 +106,7 @@ export function identifyView(
     slot,
     part.element,
     sentence,
+    tuning.ofLoop,
   );
   const candidates = candidatesCard(tuning.methods, tuning.first, {
     onRemember: events.onRemember,
@@ -164,12 +169,14 @@ export function identifyView(
       const words = qualityOf(answer, units);
       sentence.textContent = words.input;
       draw();
+      events.onLoop(answer.data_quality?.closed_loop ? asked.record : null);
       announce(`${structureTitle(answer.plant)}, fit ${formatNumber(answer.fit_percent)} %. ${words.head}`);
     },
     onError(error, asked) {
       const problem = error instanceof ApiError ? error.problem : {};
       const pointed = atRecordText(problem.errors ?? []).filter((fault) => fault.pointer !== "/record");
       model = null;
+      events.onLoop(null);
       side.hidden = true;
       cycle.show(undefined, undefined, [], units);
       sentence.textContent = "Choose a part of it that a model can explain, or another model or method above.";
@@ -183,15 +190,15 @@ export function identifyView(
   });
 
   /** The record and the options that determine its times. */
-  function extentKey(): string {
+  function extentKey(): [text: string, reading: string] {
     const { run, columns, time_unit, dt } = fields.read().record;
-    return JSON.stringify([text.read(), run, columns?.t, time_unit, dt]);
+    return [text.read(), JSON.stringify([run, columns?.t, time_unit, dt])];
   }
 
   /** Another record, or run, has another extent: a part chosen in the previous one is not meaningful in it. */
   function forgetPart(): void {
     const key = extentKey();
-    if (askedExtent !== null && key !== askedExtent) {
+    if (askedExtent !== null && (key[0] !== askedExtent[0] || key[1] !== askedExtent[1])) {
       whole = null;
       part.clear();
     }

@@ -4,14 +4,14 @@ import { postJob } from "../api/jobs.ts";
 import type { FieldError, IdentifyRequest, Job, RecordedTest, TuningRequest, Units } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
-import { keptNote } from "../form/kept_note.ts";
+import { keptNote, objectOf } from "../form/kept_note.ts";
 import type { PlantReading } from "../form/plant.ts";
 import { atRecordText } from "../form/record_text.ts";
 import { byAllMethods, EVERY_METHOD, withImplement } from "../form/tuning_request.ts";
 import type { TuneSubject } from "../form/tuning_request.ts";
 import { implementOf, inUnits, mineOfRequest, named, rememberMine } from "../my_controller.ts";
 import type { MyController } from "../my_controller.ts";
-import { formatRoute } from "../routes.ts";
+import { ABOUT_LOOP, formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { unitNames } from "../words/numbers.ts";
 import { isOfLoop, namesOf } from "../words/record_names.ts";
@@ -34,8 +34,8 @@ export interface View {
 export interface StartEvents {
   /** `all`: with every method. */
   onJob(job: Job, all: boolean): void;
-  /** The model as typed, for the address. */
-  onModel(form: string, values: Record<string, string>): void;
+  /** The content of the form has changed. */
+  onChange(): void;
   /** A record to show on Identify. */
   onRecord(request: IdentifyRequest): void;
   /** A plant, as typed, for a simulated relay test. */
@@ -45,9 +45,25 @@ export interface StartEvents {
 /** The card that describes the loop. */
 export type LoopKind = "model" | "equations" | "record" | "ultimate";
 
+/** The content of the form as typed, without a record. */
+export interface StartTexts {
+  kind: LoopKind | null;
+  model: { form: string; values: Record<string, string> };
+  equations: Record<string, string>;
+  ultimate: Record<string, string>;
+  /** Name, units, controller, today's settings, methods, and members without a field. */
+  loop: Record<string, string>;
+}
+
 export interface StartView extends View {
   load(request: TuningRequest, example?: boolean): void;
   loadTyped(form: string, values: Record<string, string>): void;
+  /** For the history; `restore` shows it again. */
+  texts(): StartTexts;
+  restore(texts: StartTexts): void;
+  /** For the address: the kind of plant, and everything as typed; null if the loop is described by a record, which
+      no address can hold, or by Ku and Pu. */
+  address(): { plant: string; values: Record<string, string> } | null;
   loadRecord(record: RecordedTest, identify: Record<string, unknown> | undefined): void;
   /** A new loop, from elsewhere. */
   beginLoop(kind: LoopKind): void;
@@ -58,6 +74,16 @@ export interface StartView extends View {
   units(): Units | undefined;
   /** The units typed for a loop that is not tuned yet. */
   typedUnits(): Units | undefined;
+  /** The controller and today's settings: cards of this screen until another one shows them. */
+  ofLoop: HTMLElement;
+  /** Takes these cards back. */
+  takeBack(): void;
+  /** The record of a loop in automatic, of which Identify has a model: today's settings are looked for in it. */
+  offerRecord(record: RecordedTest | null): void;
+  /** Resolves when they are known. */
+  settled(): Promise<void>;
+  /** Shows faults at the cards of the loop. */
+  mark(faults: FieldError[]): void;
   /** The number of loops in the form so far. */
   loops(): number;
   /** Names of the chosen methods. */
@@ -81,6 +107,8 @@ export function startView(store: Store, events: StartEvents): StartView {
     showKept();
   });
   let busy = false;
+  /** The form is being filled from elsewhere: its controller is not the user's choice. */
+  let filling = false;
   let troubled = "";
   const heading = h("h1", { tabindex: -1 }, "What do you have?");
   const status = h("p", { class: "trouble", role: "status", hidden: true });
@@ -89,20 +117,23 @@ export function startView(store: Store, events: StartEvents): StartView {
   const model = modelCard(errors, () => subject === "model", {
     onTune: () => void tuneModel(false),
     onCompare: () => void tuneModel(true),
-    onChange: events.onModel,
+    onChange: () => events.onChange(),
     onRelay: events.onRelay,
   });
   const equations = equationsCard(errors, () => subject === "equations", {
     onTune: () => void tuneEquations(false),
     onCompare: () => void tuneEquations(true),
-    onChange: (values) => events.onModel("nonlinear", values),
+    onChange: () => events.onChange(),
     onExample: (example) => load(example.request, true),
   });
   const record = recordCard(errors, {
     onIdentify: identifyRecord,
     onRead(preview) {
       today.propose(namesOf(preview));
+      showMine(inUnits(mine, unitNames(today.readUnits())));
+      followUnits();
       today.offerRecord(isOfLoop(preview) ? () => record.read().record : null);
+      events.onChange();
     },
     onNew() {
       today.offerRecord(null);
@@ -114,24 +145,29 @@ export function startView(store: Store, events: StartEvents): StartView {
   });
   const ultimate = ultimateCard(errors, () => void tuneUltimate());
   const methods = methodsCard(errors);
-  const today = todayCard(errors, () => {
+  function followUnits(): void {
     const units = unitNames(today.readUnits());
     model.setUnits(units);
     equations.setUnits(units);
     methods.setUnits(units);
     mineCard.setUnits(units);
-  });
+  }
+  const today = todayCard(errors, followUnits);
   let mine = store.get().mine;
   const mineCard = myControllerCard(errors, {
     forms: false,
     onChange(next) {
       mine = next;
-      rememberMine(next);
       today.setMine(next);
       showKept();
+      if (filling) return;
+      rememberMine(next);
       store.set((workspace) => ({ ...workspace, mine: next }));
     },
   });
+  // The controller and its settings also stand on Identify, where they can still be chosen.
+  const ofLoop = h("div", { class: "of-loop" }, mineCard.element, today.element);
+  const loopBar = h("div", { class: "loop-bar" }, today.names);
   const examples = h("div", { class: "examples" });
   const recent = h("p", { class: "recent", hidden: true });
   const element = h(
@@ -141,12 +177,13 @@ export function startView(store: Store, events: StartEvents): StartView {
     h(
       "p",
       { class: "lead" },
-      "Describe your process in one of five ways and press its button: you get controller settings and a check of the loop's robustness.",
+      "Describe your process in one of five ways and press its button: you get settings, and how robust the loop is with them.",
     ),
     recent,
     status,
     kept.element,
     errors.summary,
+    loopBar,
     h(
       "div",
       { class: "cards" },
@@ -162,16 +199,14 @@ export function startView(store: Store, events: StartEvents): StartView {
     ),
     equations.element,
     ultimate.element,
-    h(
-      "div",
-      { class: "cards two" },
-      methods.element,
-      h("div", { class: "stack" }, mineCard.element, today.element),
-    ),
+    methods.element,
   );
+  loopBar.prepend(ofLoop);
 
   for (const [kind, card] of [["model", model], ["equations", equations], ["ultimate", ultimate]] as const)
     for (const event of ["input", "submit"]) card.element.addEventListener(event, () => turnTo(kind), true);
+  // The fields follow first.
+  for (const part of [element, ofLoop]) part.addEventListener("change", () => queueMicrotask(events.onChange));
   // Another model that replaces an example's is not a variation of it.
   model.element.addEventListener("input", ({ target }) => ofExample && model.isLine(target) && beginLoop("model"), true);
 
@@ -233,11 +268,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     return { request, faults: [...chosen.errors, ...baseline.errors, ...own.errors] };
   }
 
-  function showKept(): void {
-    const { name: _name, units: _units, tune: _tune, baseline: _baseline, implement, ...others } = common(true).request;
-    const { product: _product, y_span: _y, u_span: _u, sample_time: _time, ...built } = implement ?? {};
-    kept.show({ ...others, implement: built });
-  }
+  const showKept = (): void => kept.show(unshown());
 
   function compose(subject: TuneSubject, all = false): { request: TuningRequest; faults: FieldError[] } {
     const { request, faults } = common(all);
@@ -292,6 +323,57 @@ export function startView(store: Store, events: StartEvents): StartView {
     events.onRecord({ ...(name ? { name } : {}), ...(units ? { units } : {}), record: test, identify });
   }
 
+  /** The members of the request without a field. */
+  function unshown(): Record<string, unknown> {
+    const { name: _name, units: _units, tune: _tune, baseline: _baseline, implement, ...others } = common(true).request;
+    const { product: _product, y_span: _y, u_span: _u, sample_time: _time, ...built } = implement ?? {};
+    return Object.keys(built).length > 0 ? { ...others, implement: built } : others;
+  }
+
+  function loopTexts(): Record<string, string> {
+    const rest = unshown();
+    return {
+      ...today.texts(),
+      ...mineCard.texts(),
+      ...methods.texts(),
+      rest: Object.keys(rest).length > 0 ? JSON.stringify(rest) : "",
+    };
+  }
+
+  function showLoop(texts: Record<string, string>): void {
+    filling = true;
+    const { controller = "" } = texts;
+    base = objectOf(texts["rest"]) as TuningRequest;
+    if (controller !== "") {
+      showMine({ product: controller, name: controller, needs: [] });
+      base = { ...base, implement: { ...base.implement, product: controller } };
+      mineCard.setTexts(texts);
+      showMine(mineCard.read().mine);
+    }
+    today.setTexts(texts);
+    methods.setTexts(texts);
+    showKept();
+    filling = false;
+  }
+
+  function restore(texts: StartTexts): void {
+    errors.clear();
+    loops += 1;
+    ofExample = false;
+    loop = texts.kind;
+    model.loadTyped(texts.model.form, texts.model.values);
+    if (JSON.stringify(texts.equations) !== JSON.stringify(equations.typed())) equations.loadTyped(texts.equations);
+    ultimate.setTexts(texts.ultimate);
+    showLoop(texts.loop);
+  }
+
+  function address(): { plant: string; values: Record<string, string> } | null {
+    if (loop === "record" || loop === "ultimate") return null;
+    const { form, values } = loop === "equations" ? { form: "nonlinear", values: equations.typed() } : model.typed();
+    const { "today.typed": _typed, "today.record": _record, ...told } = loopTexts();
+    return { plant: form, values: { ...values, ...(told["today.form"] === "ideal" ? { ...told, "today.form": "" } : told) } };
+  }
+
   function load(request: TuningRequest, example = false): void {
     errors.clear();
     endLoop();
@@ -300,6 +382,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     base = request;
     loop = kindOf(request);
     status.hidden = true;
+    today.offerRecord(null);
     showMine(mineOfRequest(request.implement, inUnits(store.get().mine, unitNames(request.units))));
     today.offerRecord(request.record && request.baseline === "from-record" ? () => record.read().record : null);
     today.load(request.units, request.baseline, request.name);
@@ -382,12 +465,29 @@ export function startView(store: Store, events: StartEvents): StartView {
       const another = kind === "equations" ? equations.loadTyped(values) : model.loadTyped(form, values);
       if (another && loop !== null) beginLoop(kind);
       else if (another) loop = kind;
+      if (Object.keys(values).some((name) => ABOUT_LOOP.test(name))) showLoop(values);
     },
+    texts: () => ({
+      kind: loop,
+      model: model.typed(),
+      equations: equations.typed(),
+      ultimate: ultimate.texts(),
+      loop: loopTexts(),
+    }),
+    restore,
+    address,
     loadRecord: record.load,
     beginLoop,
     endLoop,
     loops: () => loops,
     compose,
+    ofLoop,
+    takeBack: () => loopBar.prepend(ofLoop),
+    offerRecord: (given) => today.offerRecord(given && (() => given), true),
+    settled: today.settled,
+    mark(faults) {
+      for (const scope of ["/implement", "/baseline"]) errors.mark(scope, faults);
+    },
     units: today.readUnits,
     typedUnits: today.typedUnits,
     methods() {

@@ -1,6 +1,6 @@
 // The names in a recorded file: the units of its columns, and the tag that they share. And the range of u that its unit
 // or its values tell.
-import type { Preview, PreviewColumn, Span } from "../api/types.ts";
+import type { Preview, PreviewColumn, RecordedTest, Span } from "../api/types.ts";
 
 export interface RecordNames {
   /** "" if the file does not say. */
@@ -36,4 +36,11 @@ export function usualSpan(unit: string, values: readonly (number | null)[] = [])
   if (unit === "%") return [0, 100];
   const share = values.length > 0 && values.every((value) => value === null || (value >= 0 && value <= 1));
   return unit === "" && share ? [0, 1] : undefined;
+}
+
+/** True if they have the same samples and are read in the same way. */
+export function sameRecord(a: RecordedTest, b: RecordedTest): boolean {
+  const { csv: first, ...read } = a;
+  const { csv: second, ...other } = b;
+  return first === second && JSON.stringify(read) === JSON.stringify(other);
 }

@@ -1,7 +1,7 @@
 // The settings of a controller in the textbook forms: as rows, as text, and with the formula of the form.
-import type { Entry, IdentifiedController, WhyNull } from "../api/types.ts";
+import type { Entry, WhyNull } from "../api/types.ts";
 import { filterWords } from "./figures.ts";
-import { formatSetting, formatUncertain, plainSetting, quotient } from "./numbers.ts";
+import { formatSetting, plainSetting, quotient } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
 export const TEXTBOOK_FORMS = ["ideal", "parallel", "series"] as const;
@@ -118,16 +118,4 @@ export function rememberedForm(): TextbookForm {
   } catch {
     return "ideal";
   }
-}
-
-/** "Kp 0.800 ± 0.010, Ti 150.0 ± 2.0 s.": what the record holds, with standard errors and remarks. */
-export function foundWords({ controller, standard_errors, warnings }: IdentifiedController, time: string): string {
-  const written = (["Kp", "Ti", "Td"] as const).flatMap((name) => {
-    const value = (controller as Partial<Record<string, unknown>>)[name];
-    // A part that is not told from none is left out.
-    if (typeof value !== "number" || Math.abs(value) <= 2 * (standard_errors[name] ?? 0)) return [];
-    const unit = name !== "Kp" && time ? ` ${time}` : "";
-    return [`${name} ${formatUncertain(value, standard_errors[name])}${unit}`];
-  });
-  return [`${written.join(", ")}.`, ...warnings.map(({ detail }) => detail)].join(" ");
 }

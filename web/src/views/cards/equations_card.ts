@@ -13,6 +13,8 @@ export interface EquationsCard {
   read(): PlantReading;
   /** False if this card cannot show such a plant. */
   load(plant: Plant): boolean;
+  /** The texts as typed, for the address. */
+  typed(): Record<string, string>;
   /** True if its equations have changed. */
   loadTyped(values: Record<string, string>): boolean;
   setExamples(examples: Example[]): void;
@@ -97,6 +99,7 @@ export function equationsCard(errors: FormErrors, active: () => boolean, events:
       if (shown) details.open = true;
       return shown;
     },
+    typed: () => equationsAddress(fields.texts()),
     loadTyped(values) {
       const before = JSON.stringify(fields.texts());
       if (Object.keys(values).length > 0) fields.show(equationsOfAddress(values));

@@ -10,6 +10,7 @@ import { typedParts } from "../../form/typed.ts";
 import type { FieldKind, FieldSpec } from "../../form/fields.ts";
 import { asksForAll } from "../../form/tuning_request.ts";
 import { formatRoute } from "../../routes.ts";
+import { objectOf } from "../../form/kept_note.ts";
 import { defaultOf, robustOf } from "../../words/limits.ts";
 import { mentions } from "../../words/methods.ts";
 import { namedUnit, unitNames } from "../../words/numbers.ts";
@@ -21,6 +22,9 @@ export interface MethodsCard {
   setUnits(units: UnitNames): void;
   read(): { tune: TuneEntry[]; errors: FieldError[] };
   load(tune: TuneEntry[] | string | undefined): void;
+  /** The choice as typed, by names for an address; empty for the default. */
+  texts(): Record<string, string>;
+  setTexts(texts: Record<string, string>): void;
   /** A new loop: the default again, unless methods were chosen for this one. */
   beginLoop(): void;
   /** The displayed choice belongs to this loop. */
@@ -43,16 +47,18 @@ interface Row {
 export function methodsCard(errors: FormErrors): MethodsCard {
   let rows: Row[] = [];
   let units = unitNames(undefined);
+  /** A choice as typed that waits for the list of methods. */
+  let typedChoice: Record<string, string> = {};
   /** Null: the default of the contract. */
   let given: TuneEntry[] | null = null;
   const list = h("div", { class: "methods" }, h("p", { class: "hint" }, "Asking the service for its methods..."));
   /** The default method is shown with its default limits. */
-  function wanted(): TuneEntry[] {
-    if (given) return given;
+  function standard(): TuneEntry[] {
     const robust = robustOf(rows.map(({ method }) => method));
     const limits = ["Ms", "Mt"].map((name) => [name, defaultOf(robust, name)]).filter(([, value]) => value !== null);
     return [{ method: "robust", ...Object.fromEntries(limits) }];
   }
+  const wanted = (): TuneEntry[] => given ?? standard();
 
   const element = h(
     "section",
@@ -76,7 +82,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     found,
   );
   search.addEventListener("input", filter);
-  const typed = typedParts(list);
+  const typed = typedParts([list]);
 
   /** Chosen methods stay visible, whatever the search. */
   function filter(): void {
@@ -189,8 +195,47 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     show();
   }
 
+  const nameOf = (row: Row, spec: FieldSpec): string => `how.${row.method.id}.${spec.path.join(".")}`;
+
+  /** Of methods that are chosen, unless they are the default ones. */
+  function texts(): Record<string, string> {
+    if (rows.length === 0) return typedChoice;
+    const chosen = chosenRows();
+    const options = chosen.flatMap((row) => row.fields.map(({ spec, field }) => [nameOf(row, spec), field.input.value.trim()]));
+    const rests = chosen.flatMap(({ method, rest }) =>
+      Object.keys(rest).length > 0 ? [[`how.${method.id}`, JSON.stringify(rest)]] : [],
+    );
+    const all = { how: chosen.map((row) => row.method.id).join(" "), ...Object.fromEntries([...options, ...rests]) };
+    return JSON.stringify(all) === JSON.stringify(standardTexts()) ? {} : all;
+  }
+
+  function standardTexts(): Record<string, string> {
+    const [entry] = standard();
+    const row = rows.find(({ method }) => method.id === entry!.method);
+    const options = (row?.fields ?? []).map(({ spec }) => [nameOf(row!, spec), typedText(pick(entry!, spec.path), spec)]);
+    return { how: entry!.method, ...Object.fromEntries(options) };
+  }
+
+  function writeTexts(typedTexts: Record<string, string>): void {
+    typedChoice = typedTexts;
+    if (rows.length === 0 || !typedTexts["how"]) return;
+    const ids = typedTexts["how"].split(" ");
+    given = ids.map((id) => ({ method: id, ...objectOf(typedTexts[`how.${id}`]) }));
+    typedChoice = {};
+    show();
+    for (const row of rows.filter(({ chosen }) => chosen.checked))
+      for (const { spec, field } of row.fields) field.input.value = typedTexts[nameOf(row, spec)] ?? field.input.value;
+  }
+
   return {
     element,
+    texts,
+    setTexts(typedTexts) {
+      typed.forget();
+      if (!typedTexts["how"]) return load(undefined);
+      typed.note([""]);
+      writeTexts(typedTexts);
+    },
     setMethods(methods) {
       for (const row of rows) for (const { field } of row.fields) errors.remove(field.control);
       rows = methods.filter((method) => method.id !== "all").map(makeRow);
@@ -210,6 +255,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
           : []),
       );
       show();
+      writeTexts(typedChoice);
       writeUnits();
     },
     setUnits(next) {

@@ -3,7 +3,7 @@ import type { Plant } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import type { PlantReading } from "../../form/plant.ts";
-import { plantFields } from "../../form/plant_fields.ts";
+import { LINE, plantFields } from "../../form/plant_fields.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 
 export interface ModelCard {
@@ -14,6 +14,8 @@ export interface ModelCard {
   isLine(input: EventTarget | null): boolean;
   /** False if this card cannot show such a plant. */
   load(plant: Plant): boolean;
+  /** The form's id and the texts as typed, for the address. */
+  typed(): { form: string; values: Record<string, string> };
   /** True if its model has changed. */
   loadTyped(form: string, values: Record<string, string>): boolean;
   setUnits(units: UnitNames): void;
@@ -68,10 +70,14 @@ export function modelCard(errors: FormErrors, active: () => boolean, events: Mod
     beginLoop: fields.beginLoop,
     isLine: fields.isLine,
     load: fields.load,
+    typed: fields.typed,
     loadTyped(form, values) {
-      const before = JSON.stringify(fields.typed());
+      const before = fields.typed();
+      const names = [LINE, ...Object.keys(before.values)];
+      const isShown = form === before.form && names.every((name) => (values[name] ?? "") === (before.values[name] ?? ""));
+      if (isShown) return false;
       fields.loadTyped(form, values);
-      return JSON.stringify(fields.typed()) !== before;
+      return JSON.stringify(fields.typed()) !== JSON.stringify(before);
     },
     setUnits: fields.setUnits,
   };

@@ -7,7 +7,7 @@ import { textField } from "../../form/controls.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import { parseNumber } from "../../form/number.ts";
 import { spanFields } from "../../form/span_fields.ts";
-import { missingOf } from "../../my_controller.ts";
+import { missingOf, sameImplement } from "../../my_controller.ts";
 import type { MyController } from "../../my_controller.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 import { TEXTBOOK_FORMS, formTitle } from "../../words/settings.ts";
@@ -35,6 +35,9 @@ export interface MyControllerCard {
   /** As if it were chosen in the field: with the usual ranges, and reported. */
   choose(id: string | undefined): void;
   set(mine: MyController | null, form?: TextbookForm): void;
+  /** The fields as typed, by names for an address; the product itself is set by `set`. */
+  texts(): Record<string, string>;
+  setTexts(texts: Record<string, string>): void;
   /** The content of the fields. A missing fact is not a fault: the card names it. */
   read(): { mine: MyController | null; errors: FieldError[] };
 }
@@ -119,16 +122,18 @@ export function myControllerCard(
     change();
   }
 
-  /** The usual ranges, where none is given. They are seen before they are used. */
-  function propose(): void {
+  /** The usual ranges, where none is given. They are seen before they are used. True if there was one. */
+  function propose(): boolean {
+    let proposed = false;
     for (const [need, field, usual] of [
       ["y_span", measurement, usualSpan(units?.y ?? "")],
       ["u_span", output, usualSpan(units?.u ?? "", recorded)],
     ] as const) {
       if (!chosen?.needs.includes(need) || !usual || !field.isEmpty()) continue;
       field.set(usual);
-      facts.open = true;
+      facts.open = proposed = true;
     }
+    return proposed;
   }
 
   /** Shows the fields that the chosen product needs, and no others. */
@@ -167,6 +172,12 @@ export function myControllerCard(
     return { mine, errors: faults };
   }
 
+  function write(mine: MyController | null): void {
+    measurement.set(mine?.y_span);
+    output.set(mine?.u_span);
+    sampling.input.value = mine?.sample_time === undefined ? "" : String(mine.sample_time);
+  }
+
   function sayMissing(mine: MyController | null): void {
     needed.textContent = mine ? needSentence(missingOf(mine)) : "";
     if (needed.textContent !== "") facts.open = true;
@@ -193,19 +204,31 @@ export function myControllerCard(
       measurement.setUnit(units.y);
       output.setUnit(units.u);
       sampling.setUnit(units.time);
+      if (chosen && propose()) change();
     },
     setOutput(values) {
       recorded = values;
     },
     choose,
     set(mine, given) {
+      // Half a range, or a name that no product has yet, stays as typed.
+      const same = forms ? false : sameImplement(read().mine, mine);
       form = given ?? form;
       chosen = mine ? { product: mine.product, name: mine.name, needs: mine.needs } : null;
-      measurement.set(mine?.y_span);
-      output.set(mine?.u_span);
-      sampling.input.value = mine?.sample_time === undefined ? "" : String(mine.sample_time);
-      show();
+      if (!same) write(mine);
+      if (!same || mine) show();
       sayMissing(mine);
+    },
+    texts: () => ({
+      controller: chosen?.product ?? "",
+      "controller.y": measurement.text(),
+      "controller.u": output.text(),
+      "controller.sample_time": sampling.input.value.trim(),
+    }),
+    setTexts(texts) {
+      measurement.setText(texts["controller.y"] ?? "");
+      output.setText(texts["controller.u"] ?? "");
+      sampling.input.value = texts["controller.sample_time"] ?? "";
     },
     read,
   };

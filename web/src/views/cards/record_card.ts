@@ -164,7 +164,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     void look();
   });
   reading.addEventListener("change", () => void look());
-  const typed = typedParts(reading);
+  const typed = typedParts([reading]);
   file.addEventListener("change", () => void take(file.files?.[0]));
   // The whole card accepts a dropped file, because users do not aim.
   element.addEventListener("dragover", (event) => {

@@ -1,6 +1,6 @@
 // The subject of a job: its name, its plant, and links to the next steps. Head of every screen that shows a job.
 import { isRangeRequest } from "../../api/range.ts";
-import type { Job, Plant } from "../../api/types.ts";
+import type { Job, Plant, TuningRequest } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import type { Child } from "../../dom.ts";
 import { plantFormula } from "../../form/formula.ts";
@@ -8,6 +8,7 @@ import { formatRoute } from "../../routes.ts";
 import { unitNames } from "../../words/numbers.ts";
 import { plantTitle, plantWords } from "../../words/plant.ts";
 import { rangeWords } from "../../words/range.ts";
+import { linkMenu } from "../link_menu.ts";
 import { reportLink } from "../report_link.ts";
 import { requestMenu } from "../request_menu.ts";
 import { isOfUltimate } from "./ultimate_card.ts";
@@ -24,6 +25,7 @@ export interface TitleCard {
 /** `screen`: the heading of a job without a name. `actions`: in addition to the links that every job has. */
 export function titleCard(screen: string, announce: (sentence: string) => void, ...actions: Child[]): TitleCard {
   const menu = requestMenu(announce);
+  const link = linkMenu(announce);
   const heading = h("h1", { tabindex: -1 }, screen);
   const plantLine = h("p", { class: "hint" });
   const formula = h("div");
@@ -37,7 +39,7 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
     heading,
     plantLine,
     formula,
-    h("p", { class: "actions" }, editLink, recordLink, report.element, sheet.element, actions, menu.element),
+    h("p", { class: "actions" }, editLink, recordLink, report.element, sheet.element, actions, link.element, menu.element),
   );
   let about: Job | null = null;
   let chosen: number | null = null;
@@ -78,10 +80,12 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       about = job;
       chosen = entry;
       menu.show("v1/jobs", request);
+      link.show(job, request);
       showPages(true);
     },
     setShown({ path, request }, own) {
       menu.show(path, request);
+      if (about) link.show(about, path === "v1/jobs" ? (request as TuningRequest) : about.request);
       showPages(own);
     },
   };

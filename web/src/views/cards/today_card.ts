@@ -1,24 +1,28 @@
-// Units and today's settings: both optional.
+// Today's settings, typed or from the record, and the loop's name and units: all optional.
 import { sentenceOf } from "../../api/client.ts";
 import { newest } from "../../api/latest.ts";
 import { getProduct } from "../../api/products.ts";
 import { controllerInRecord } from "../../api/records.ts";
 import type { Baseline, FieldError, Filter, RecordedTest, SettingValue, TuningRequest, Units } from "../../api/types.ts";
-import { h } from "../../dom.ts";
+import { foldedOnPhones, h, uniqueId } from "../../dom.ts";
 import { choiceField, textField } from "../../form/controls.ts";
+import { openAround } from "../../form/errors.ts";
 import type { FormErrors } from "../../form/errors.ts";
-import { keptNote } from "../../form/kept_note.ts";
+import { keptNote, objectOf } from "../../form/kept_note.ts";
 import { parseNumber } from "../../form/number.ts";
 import { productFields } from "../../form/product_fields.ts";
 import { typedParts } from "../../form/typed.ts";
-import { mineOfRequest, typedBaseline } from "../../my_controller.ts";
+import { implementOf, mineOfRequest, typedBaseline } from "../../my_controller.ts";
 import type { MyController } from "../../my_controller.ts";
 import { exactText } from "../../words/numbers.ts";
-import { foundWords } from "../../words/settings.ts";
+import { foundWords } from "../../words/found.ts";
+import { sameRecord } from "../../words/record_names.ts";
 import type { RecordNames } from "../../words/record_names.ts";
 
 export interface TodayCard {
   element: HTMLElement;
+  /** Name and units of the loop. */
+  names: HTMLElement;
   /** Undefined: none is named. */
   readUnits(): Units | undefined;
   /** The units that were typed since the loop began. */
@@ -26,10 +30,16 @@ export interface TodayCard {
   read(): { baseline: TuningRequest["baseline"]; errors: FieldError[] };
   load(units: Units | undefined, baseline: TuningRequest["baseline"], name: string | undefined): void;
   readName(): string;
-  /** Names that a file tells: written where nothing is typed. */
+  /** Everything as typed, by names for an address. */
+  texts(): Record<string, string>;
+  setTexts(texts: Record<string, string>): void;
+  /** Names that a file tells: written where nothing is typed. Without reporting. */
   propose(names: RecordNames): void;
-  /** The record in which today's settings can be found; null: there is none, or not of a loop. */
-  offerRecord(read: (() => RecordedTest) | null): void;
+  /** The record in which today's settings can be found; null: there is none, or not of a loop. `ask`: at once;
+      settings that are certain are then taken where none are typed. */
+  offerRecord(read: (() => RecordedTest) | null, ask?: boolean): void;
+  /** Resolves when the service has answered about the record. */
+  settled(): Promise<void>;
   /** A new loop: values that were filled in, or belonged to the previous loop, are cleared; values typed for this
       one stay. */
   beginLoop(): void;
@@ -41,10 +51,12 @@ export interface TodayCard {
 
 const DEFAULT_FILTER = "derivative";
 
+const IN_RECORD = "The record is that of a loop: today's settings may be found in it.";
+
 /** Instead of a form: the settings as typed into the user's own controller. */
 const OWN = "own";
 
-/** Instead of a form: the settings that moved u in the record. */
+/** Instead of settings: those that moved u in the record. */
 const FOUND = "from-record";
 
 /** The part of the card other than labels. */
@@ -64,14 +76,18 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   const time = unit("Time unit", "/units/time", "", "s");
   const u = unit("Unit of u", "/units/u", "", "%");
   const y = unit("Unit of y", "/units/y", "", "degC");
-  for (const field of [time, u, y]) field.input.addEventListener("change", onUnits);
+  for (const field of [time, u, y])
+    field.input.addEventListener("change", () => {
+      onUnits();
+      askAgain();
+    });
 
   const form = choiceField({ label: "Form", choices: FORMS, pointer: () => "/baseline/form" }, errors);
   const slots = (["first", "second", "third"] as const).map((_, index) =>
     textField({ label: "", pointer: () => `/baseline/${names()[index]}` }, errors),
   );
   const filter = textField(
-    { label: "Tf", hint: "filter of the derivative; empty: none", pointer: () => "/baseline/filter/Tf" },
+    { label: "Tf", hint: "filter", pointer: () => "/baseline/filter/Tf" },
     errors,
   );
   const delta = textField(
@@ -87,10 +103,15 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   const own = productFields(errors, () => isOwn());
   own.element.hidden = true;
   let record: (() => RecordedTest) | null = null;
-  const note = h("p", { class: "hint", role: "status", hidden: true });
+  const said = h("p", { role: "status" });
+  const take = h("input", { type: "checkbox", id: uniqueId("found") });
+  const offer = h("div", { class: "check" }, take, h("label", { for: take.id }, "Use as today's settings"));
+  const fromRecord = h("div", { class: "from-record", hidden: true }, said, offer);
   const beginFind = newest();
-  /** The service has found them: what it refuses is not sent. */
+  /** What the service was asked last, and its answer: what it refuses is not sent. */
+  let asked: { record: RecordedTest; rest: string } | null = null;
   let sure = false;
+  let finding: Promise<void> = Promise.resolve();
   // Members of a loaded request that no field shows, e.g. set-point weights.
   let rest: Record<string, unknown> = {};
   let filterType = DEFAULT_FILTER;
@@ -105,12 +126,15 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     return form.input.value === "parallel" ? ["Kp", "Ki", "Kd"] : ["Kp", "Ti", "Td"];
   }
   const isOwn = (): boolean => form.input.value === OWN;
-  const isFound = (): boolean => form.input.value === FOUND;
+  const isFound = (): boolean => record !== null && take.checked;
 
   function label(): void {
-    own.element.hidden = !isOwn();
+    fromRecord.hidden = record === null;
+    if (record) openAround(fromRecord);
+    typedFields.hidden = isFound();
+    own.element.hidden = !isOwn() || isFound();
     form.element.classList.toggle("wide", isOwn());
-    for (const field of [...slots, filter]) field.element.hidden = isOwn() || isFound();
+    for (const field of [...slots, filter]) field.element.hidden = isOwn();
     kept.show(isOwn() || isFound() ? {} : rest);
     names().forEach((text, index) => slots[index]!.setLabel(text));
     delta.element.hidden = form.input.value !== "npid";
@@ -132,40 +156,57 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   /** Its own form is offered if there is a controller. */
   function setMine(next: MyController | null, settings?: Record<string, SettingValue>): void {
     mine = next;
-    showForms();
+    const chosen = form.input.value;
+    const own = mine ? [[OWN, mine.name] as const] : [];
+    form.input.replaceChildren(...[...FORMS, ...own].map(([value, text]) => h("option", { value }, text)));
+    form.input.value = chosen === OWN && !mine ? "ideal" : chosen;
+    label();
     showProduct(settings);
   }
 
-  function showForms(): void {
-    const chosen = form.input.value;
-    const own = mine ? [[OWN, mine.name] as const] : [];
-    const found = record ? [[FOUND, "from the record"] as const] : [];
-    form.input.replaceChildren(
-      ...[...FORMS, ...own, ...found].map(([value, text]) => h("option", { value }, text)),
-    );
-    form.input.value = (chosen === OWN && !mine) || (chosen === FOUND && !record) ? "ideal" : chosen;
+  const isEmpty = (): boolean =>
+    own.isEmpty() && [...slots, filter, delta].every((field) => field.input.value.trim() === "");
+
+  /** Asks once for each record and controller; a refusal takes the choice back. */
+  async function find(): Promise<void> {
+    const implement = implementOf(mine);
+    const units = unitsOf(() => true);
+    const question = { record: record!(), rest: JSON.stringify([implement, units]) };
+    if (asked && asked.rest === question.rest && sameRecord(asked.record, question.record)) return;
+    asked = question;
+    const isNewest = beginFind();
+    sure = false;
+    offer.hidden = true;
+    said.textContent = "Looking for today's settings in the record…";
+    try {
+      const found = await controllerInRecord(question.record, implement, units);
+      const product = implement ? await getProduct(implement.product) : null;
+      if (!isNewest()) return;
+      sure = true;
+      said.textContent = foundWords(found, product, time.input.value.trim() || "s");
+      offer.hidden = false;
+      if ((found.identified.certain ?? found.identified.warnings.length === 0) && isEmpty() && !typed.has(BASELINE)) take.checked = true;
+    } catch (error) {
+      if (!isNewest()) return;
+      said.textContent = `There are no settings from the record. ${sentenceOf(error)}`;
+      take.checked = false;
+    }
     label();
   }
 
-  /** What the record holds is asked once, when it is chosen; a refusal takes the choice back. */
-  async function find(): Promise<void> {
-    const isNewest = beginFind();
-    sure = false;
-    note.hidden = !isFound();
-    if (!isFound() || !record) return;
-    note.textContent = "Looking in the record...";
-    try {
-      const found = await controllerInRecord(record());
-      if (!isNewest()) return;
-      sure = true;
-      note.textContent = foundWords(found, time.input.value.trim());
-    } catch (error) {
-      if (!isNewest()) return;
-      note.textContent = `There are no settings from the record. ${sentenceOf(error)}`;
-      form.input.value = mine ? OWN : "ideal";
-      label();
-    }
+  const ask = (): void => {
+    finding = find();
+  };
+
+  /** Another controller, or units, make other words of the same settings. */
+  function askAgain(): void {
+    if (record && sure && asked) ask();
   }
+
+  take.addEventListener("change", () => {
+    label();
+    if (isFound()) ask();
+  });
 
   function readOwn(): { baseline: Baseline | undefined; errors: FieldError[] } {
     const { settings, errors: faults } = own.read();
@@ -173,11 +214,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     return { baseline: typedBaseline(mine, settings), errors: faults };
   }
 
-  label();
-  form.input.addEventListener("change", () => {
-    label();
-    void find();
-  });
+  form.input.addEventListener("change", label);
 
   const labels = { name, time, u, y };
 
@@ -190,8 +227,10 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
 
   function loadBaseline(loaded: TuningRequest["baseline"]): void {
     beginFind();
-    sure = loaded === FOUND;
-    note.hidden = true;
+    asked = null;
+    sure = take.checked = loaded === FOUND;
+    said.textContent = IN_RECORD;
+    offer.hidden = false;
     const baseline = loaded === FOUND ? undefined : loaded;
     if (baseline?.product !== undefined) {
       const { product, settings, ...spans } = baseline;
@@ -202,7 +241,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     }
     own.load({});
     const known = baseline && FORMS.some(([id]) => id === baseline.form);
-    form.input.value = known ? baseline.form : loaded === FOUND && record ? FOUND : mine && !baseline ? OWN : "ideal";
+    form.input.value = known ? baseline.form : mine && !baseline ? OWN : "ideal";
     label();
     const text = (value: unknown): string => (typeof value === "number" ? exactText(value) : "");
     names().forEach((key, index) => {
@@ -218,18 +257,28 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     keep(Object.fromEntries(Object.entries(baseline ?? {}).filter(([key]) => !shown.includes(key))));
   }
 
-  const element = h(
-    "section",
-    { class: "card", "aria-labelledby": "today-title" },
-    h("h2", { id: "today-title" }, "Today's settings ", h("span", { class: "optional" }, "optional")),
-    h("p", { class: "hint" }, "The present settings of the controller: every proposal is compared with them."),
-    h("div", { class: "fields" }, form.element, ...slots.map((slot) => slot.element), delta.element, filter.element),
-    note,
+  const typedFields = h(
+    "div",
+    { class: "fields" },
+    form.element,
+    slots.map((slot) => slot.element),
+    delta.element,
+    filter.element,
+  );
+  const element = foldedOnPhones(
+    "Today's settings",
+    "optional, compared with every proposal",
+    fromRecord,
+    typedFields,
     own.element,
     kept.element,
-    h("h2", {}, "Name and units ", h("span", { class: "optional" }, "optional")),
-    h("div", { class: "fields" }, name.element, time.element, u.element, y.element),
   );
+  const loop = foldedOnPhones(
+    "Name and units",
+    "optional",
+    h("div", { class: "fields names" }, name.element, time.element, u.element, y.element),
+  );
+  label();
 
   /** A unit that was not named is not sent: the service then states its assumption. */
   function unitsOf(counts: (part: string) => boolean): Units | undefined {
@@ -242,20 +291,52 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
 
   const partOf = (input: EventTarget | null): string =>
     Object.entries(labels).find(([, field]) => field.input === input)?.[0] ?? BASELINE;
-  const typed = typedParts(element, partOf);
+  const typed = typedParts([element, loop], partOf);
+
+  /** The fields of today's settings by their names, whatever the form. */
+  const inputs = (): Record<string, HTMLInputElement> => ({
+    ...Object.fromEntries(slots.map((slot, index) => [`today.${index + 1}`, slot.input])),
+    "today.Tf": filter.input,
+    "today.delta_r": delta.input,
+    ...Object.fromEntries(Object.entries(labels).map(([part, field]) => [`loop.${part}`, field.input])),
+  });
+  const OWN_TEXT = "today.set.";
 
   return {
     element,
+    names: loop,
+    texts: () => ({
+      ...Object.fromEntries(Object.entries(inputs()).map(([key, input]) => [key, input.value.trim()])),
+      ...Object.fromEntries(Object.entries(own.texts()).map(([key, text]) => [OWN_TEXT + key, text.trim()])),
+      "today.form": form.input.value,
+      "today.rest": Object.keys(rest).length > 0 ? JSON.stringify(rest) : "",
+      "today.record": take.checked ? "yes" : "",
+      "today.typed": typed.list().join(" "),
+    }),
+    setTexts(texts) {
+      for (const [key, input] of Object.entries(inputs())) input.value = texts[key] ?? "";
+      const settings = Object.entries(texts).filter(([key]) => key.startsWith(OWN_TEXT));
+      own.setTexts(Object.fromEntries(settings.map(([key, text]) => [key.slice(OWN_TEXT.length), text])));
+      const known = [...form.input.options].some(({ value }) => value === texts["today.form"]);
+      form.input.value = known ? texts["today.form"]! : "ideal";
+      rest = objectOf(texts["today.rest"]);
+      sure = take.checked = texts["today.record"] === "yes";
+      asked = null;
+      typed.forget();
+      typed.note((texts["today.typed"] ?? "").split(" ").filter(Boolean));
+      label();
+      onUnits();
+    },
     readName: () => name.input.value.trim(),
     readUnits: () => unitsOf(() => true),
     typedUnits: () => unitsOf((part) => typed.has(part)),
     setMine(next) {
-      const empty = [...slots, filter, delta].every((field) => field.input.value.trim() === "");
-      if (next && next.product !== mine?.product && empty && !isOwn()) {
+      if (next && next.product !== mine?.product && isEmpty() && !isOwn()) {
         setMine(next);
         form.input.value = OWN;
         label();
       } else setMine(next);
+      askAgain();
     },
     read() {
       if (isFound()) return { baseline: sure ? FOUND : undefined, errors: [] };
@@ -297,14 +378,13 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     propose(names) {
       for (const [part, text] of [["u", names.u], ["y", names.y], ["name", names.tag]] as const)
         if (text !== "" && labels[part].input.value.trim() === "") labels[part].input.value = text;
-      onUnits();
     },
-    offerRecord(read) {
+    offerRecord(read, now = false) {
       record = read;
-      showForms();
-      if (isFound()) void find();
-      else if (!read) note.hidden = true;
+      label();
+      if (read && (now || isFound())) ask();
     },
+    settled: () => finding,
     beginLoop() {
       for (const [part, field] of Object.entries(labels)) if (!typed.has(part)) field.input.value = "";
       if (!typed.has(BASELINE)) loadBaseline(undefined);

@@ -11,6 +11,9 @@ export interface UltimateCard {
   element: HTMLFormElement;
   read(): { ultimate: Record<string, number>; errors: FieldError[] };
   load(request: TuningRequest): void;
+  /** As typed, by the fields' names. */
+  texts(): Record<string, string>;
+  setTexts(texts: Record<string, string>): void;
 }
 
 export function ultimateCard(errors: FormErrors, onTune: () => void): UltimateCard {
@@ -58,6 +61,10 @@ export function ultimateCard(errors: FormErrors, onTune: () => void): UltimateCa
         else faults.push({ pointer: `/ultimate/${name}`, detail: parsed.sentence });
       }
       return { ultimate, errors: faults };
+    },
+    texts: () => Object.fromEntries(Object.entries(fields).map(([name, { input }]) => [name, input.value])),
+    setTexts(texts) {
+      for (const [name, { input }] of Object.entries(fields)) input.value = texts[name] ?? "";
     },
     load(request) {
       const given = (request["ultimate"] ?? {}) as Record<string, number>;

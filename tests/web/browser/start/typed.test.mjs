@@ -1,7 +1,7 @@
 // A model in one line: its formula during typing, the fields that follow, and its faults.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { browserTests } from "../harness.mjs";
+import { browserTests } from "../../harness.mjs";
 
 const { withPage, jobOf } = browserTests();
 

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
-import { accessibilityViolations, browserTests, overflow, root } from "../harness.mjs";
+import { accessibilityViolations, browserTests, overflow, root } from "../../harness.mjs";
 
 const { withPage } = browserTests();
 

@@ -1,8 +1,8 @@
 // A new loop's request contains the choices for it, and nothing of an example, of an earlier loop or of another card.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { browserTests, dropFile } from "../harness.mjs";
-import { disturbedTest, stepTest } from "../step_record.mjs";
+import { browserTests, dropFile } from "../../harness.mjs";
+import { disturbedTest, stepTest } from "../../step_record.mjs";
 
 const tests = browserTests();
 const { withPage, post } = tests;

@@ -267,7 +267,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   );
   const element = foldedOnPhones(
     "Today's settings",
-    "optional, compared with every proposal",
+    "optional, for comparison",
     fromRecord,
     typedFields,
     own.element,

@@ -105,3 +105,17 @@ export function quotient(top: string, bottom: string): string {
 export function product(a: string, b: string): string {
   return [a, b].filter(Boolean).join(" ");
 }
+
+const DURATIONS = [
+  ["day", 86_400],
+  ["hour", 3600],
+  ["minute", 60],
+  ["second", 1],
+] as const;
+
+/** "7 days", "36 hours": in the largest unit of which it is a whole number. */
+export function durationWords(seconds: number): string {
+  const [name, size] = DURATIONS.find(([, length]) => seconds >= length && seconds % length === 0) ?? DURATIONS[3];
+  const count = Math.round(seconds / size);
+  return `${count} ${name}${count === 1 ? "" : "s"}`;
+}

@@ -52,10 +52,9 @@ export function closesItself(menu: HTMLDetailsElement): HTMLDetailsElement {
   return menu;
 }
 
-/** An optional card, which is folded at first where it would push others off a small screen. */
-export function foldedOnPhones(title: string, aside: string, ...content: Child[]): HTMLElement {
+/** A card that can be folded away. */
+export function foldingCard(title: string, aside: string, open: boolean, ...content: Child[]): HTMLElement {
   const heading = h("h2", { id: uniqueId("card") }, `${title} `, h("span", { class: "optional" }, aside));
-  const open = !window.matchMedia("(max-width: 700px)").matches;
   return h(
     "section",
     { class: "card optional-card", "aria-labelledby": heading.id },

@@ -1,5 +1,5 @@
 // The job that the page follows: started, shown, replaced by another one.
-import { postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
+import { getJob, postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
 import { newest } from "./api/latest.ts";
 import { isFinal } from "./api/types.ts";
 import type { Job, TuningRequest } from "./api/types.ts";
@@ -17,16 +17,31 @@ export interface JobFlow {
   compareAll(request: TuningRequest): Promise<void>;
   /**
    * Replaces the shown job: the screen stays, and Back leads to the previous design with its job. Throws if the entry
-   * with that index gets no answer. Returns the job, null if another one has replaced it meanwhile.
+   * with that index gets no answer. Returns the job, null if another one has replaced it meanwhile. `onWaiting`: the
+   * job while it runs, from its second second on.
    */
-  retune(request: TuningRequest, index: number): Promise<Job | null>;
+  retune(request: TuningRequest, index: number, onWaiting: (job: Job) => void): Promise<Job | null>;
   /** Reports the state of a job until it has ended or another one is followed. */
   follow(id: string): void;
   take(job: Job): void;
   stop(): void;
 }
 
-const LONGEST_WAIT_S = 20;
+/** Quick designs are answered in the first call. */
+const FIRST_WAIT_S = 1;
+const LONGEST_WAIT_MS = 20_000;
+const POLL_MS = 400;
+
+/** The job when it has ended, or after the longest wait. */
+async function ended(job: Job, onWaiting: (job: Job) => void): Promise<Job> {
+  const until = Date.now() + LONGEST_WAIT_MS;
+  while (!isFinal(job.status) && Date.now() < until) {
+    onWaiting(job);
+    await new Promise((over) => setTimeout(over, POLL_MS));
+    job = await getJob(job.id);
+  }
+  return job;
+}
 
 export function jobFlow(store: Store): JobFlow {
   let stopWatching: (() => void) | null = null;
@@ -39,13 +54,16 @@ export function jobFlow(store: Store): JobFlow {
   }
 
   /** The newest call counts: results of older ones are dropped. */
-  async function retune(request: TuningRequest, index: number): Promise<Job | null> {
+  async function retune(request: TuningRequest, index: number, onWaiting: (job: Job) => void): Promise<Job | null> {
     const from = store.get().route;
     const isNewest = beginRetune();
-    const job = await postJobAndWait(request, LONGEST_WAIT_S).catch((error: unknown) => {
-      if (isNewest()) throw error;
-    });
+    const job = await postJobAndWait(request, FIRST_WAIT_S)
+      .then((made) => ended(made, (now) => isNewest() && onWaiting(now)))
+      .catch((error: unknown) => {
+        if (isNewest()) throw error;
+      });
     if (!job || !isNewest()) return null;
+    if (job.status === "cancelled" && !job.result) throw new Error("The search was stopped; the design stays as it was.");
     const failure = job.error ?? job.result?.controllers[index]?.error;
     if (failure) throw new Error(failure.detail ?? failure.title ?? "There is no such design.");
     const now = store.get().route;

@@ -15,6 +15,8 @@ import type { RelayView } from "./views/relay.ts";
 import { startView } from "./views/start.ts";
 import type { StartView, View } from "./views/start.ts";
 
+const loadDesign = () => import("./views/design.ts");
+
 export interface Screens {
   /** Shows the screen of the address. `first`: nothing was shown before, and the focus stays. */
   go(first: boolean): void;
@@ -26,15 +28,6 @@ function awayView(title: string): View {
   const heading = h("h1", { tabindex: -1 }, title);
   const trouble = h("p", { class: "trouble", role: "status" }, sentenceOf(notConnected()));
   return { element: h("main", { id: "main" }, heading, trouble), heading, dispose: () => undefined };
-}
-
-// Most visits go on to these two: they are loaded with the first touch of the page, before their screen is opened.
-const loadDesign = (): Promise<typeof import("./views/design.ts")> => import("./views/design.ts");
-const loadIdentify = (): Promise<typeof import("./views/identify.ts")> => import("./views/identify.ts");
-
-function loadAhead(): void {
-  const load = (): void => void Promise.all([loadDesign(), loadIdentify()]).catch(() => undefined);
-  for (const touch of ["pointerdown", "keydown", "dragenter"]) document.addEventListener(touch, load, { once: true });
 }
 
 /** `listed`: resolves when methods and examples are known. */
@@ -89,6 +82,9 @@ export function screens(
       },
       onChange: startChanged,
     });
+    // Read before it is needed, as soon as somebody works here.
+    for (const event of ["pointerdown", "focusin", "dragenter"])
+      start.element.addEventListener(event, () => void loadDesign().catch(() => undefined), { once: true });
     return start;
   }
 
@@ -178,15 +174,14 @@ export function screens(
     return [];
   }
 
-  /** Identify with this record, or the reason why there is none. */
-  async function showIdentify(test: IdentifyRequest | null, focus: boolean, region = false, trouble = ""): Promise<void> {
-    const part = await later(loadIdentify(), store.get().route, "Identify", focus);
+  /** `test`: the record, or the reason why there is none ("": none was dropped). */
+  async function openIdentify(route: Route, test: IdentifyRequest | string, focus: boolean, region = false): Promise<void> {
+    const part = await later(import("./views/identify.ts"), route, "Identify", focus);
     if (!part) return;
-    const { identifyView, noRecordView } = part;
-    if (!test) return mount(noRecordView(trouble), "Identify · Tunewright", focus);
+    if (typeof test === "string") return mount(part.noRecordView(test), "Identify · Tunewright", focus);
     const address = location.hash;
     const first = remembered?.address === address ? remembered.choice : { structure: "", region };
-    const shown = identifyView(test, { ofLoop: startScreen().ofLoop, methods: startScreen().methods(), first }, announce, {
+    const view = part.identifyView(test, { ofLoop: startScreen().ofLoop, methods: startScreen().methods(), first }, announce, {
       onLoop: startScreen().offerRecord,
       onRemember(choice) {
         remembered = { address, choice };
@@ -197,7 +192,7 @@ export function screens(
       },
       onTune: tuneSubject,
     });
-    mount(shown, "Identify · Tunewright", focus);
+    mount(view, "Identify · Tunewright", focus);
     keepStart();
   }
 
@@ -208,7 +203,7 @@ export function screens(
       const job = known?.id === id && known.request ? known : await getJob(id);
       const { name, units, record, identify } = job.request ?? {};
       if (store.get().route !== route) return;
-      if (!record || !job.request) return void showIdentify(null, focus);
+      if (!record || !job.request) return void openIdentify(route, "", focus);
       fillForm(job.request);
       const test: IdentifyRequest = {
         ...(name ? { name } : {}),
@@ -217,9 +212,9 @@ export function screens(
         ...(identify ? { identify } : {}),
       };
       store.set((workspace) => ({ ...workspace, test }));
-      await showIdentify(test, focus, job.request["uncertainty"] === "identified");
+      void openIdentify(route, test, focus, job.request["uncertainty"] === "identified");
     } catch (error) {
-      if (store.get().route === route) void showIdentify(null, focus, false, sentenceOf(error));
+      if (store.get().route === route) void openIdentify(route, sentenceOf(error), focus);
     }
   }
 
@@ -360,7 +355,7 @@ export function screens(
       // After a reload the record comes from the tab's memory.
       if (first && test && !entryState().start) fillForm({ ...test });
       restoreStart();
-      return void showIdentify(test, !first);
+      return void openIdentify(route, test ?? "", !first);
     }
     if (route.screen === "range") return void openRange(route, !first);
     if (route.screen === "relay") return void openRelay(route, !first);
@@ -372,7 +367,6 @@ export function screens(
     void refreshRecent();
   }
 
-  loadAhead();
   // The address follows the choices, and the title follows the loop's name.
   store.subscribe((workspace, previous) => {
     const route = workspace.route;

@@ -369,3 +369,12 @@ for (const [name, options] of WINDOWS) {
     });
   });
 }
+
+test("the table says how many rows are below its visible part, until it is scrolled to its end", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await compareAll(page);
+    await page.getByText(/^\d+ more rows below: scroll the table\.$/).waitFor();
+    await table(page).evaluate((region) => region.scrollTo(0, region.scrollHeight));
+    await page.getByText(/more rows? below/).waitFor({ state: "hidden" });
+  });
+});

@@ -131,3 +131,58 @@ test("lists that could not be had at first are asked for again", async () => {
     ["ERR_FAILED"],
   );
 });
+
+/** Answers calls about the next posted job with a search under way, until it is let go. */
+async function slowSearch(page) {
+  let id = null;
+  let slow = true;
+  const running = (job) => ({ ...job, status: "running", result: undefined, finished_at: null, progress: { stage: "tune", fraction: 0.4 } });
+  await page.route(/\/v1\/jobs(\/[^/]+(\/cancel)?)?$/, async (route) => {
+    const request = route.request();
+    const isNew = request.method() === "POST" && request.url().endsWith("/v1/jobs");
+    const isIts = id !== null && request.url().includes(id);
+    if (!isNew && !isIts) return route.continue();
+    if (isIts && request.url().endsWith("/cancel")) {
+      slow = false;
+      const job = await (await fetch(`${tests.service.base}/v1/jobs/${id}`)).json();
+      return route.fulfill({ json: { ...job, status: "cancelled", result: undefined } });
+    }
+    const response = await route.fetch();
+    const job = await response.json();
+    if (isNew) id = job.id;
+    const ended = stopped ? { ...job, status: "cancelled", result: undefined } : job;
+    return route.fulfill({ response, json: slow ? running(job) : ended });
+  });
+  let stopped = false;
+  page.on("request", (request) => (stopped ||= request.url().endsWith("/cancel")));
+  return { letGo: () => (slow = false), wasStopped: () => stopped };
+}
+
+for (const end of ["ended", "stopped"])
+  test(`a slow design for another controller shows its progress beside the present one, until it is ${end}`, async () => {
+    await withPage("#/new/fopdt?K=2&T=10&L=3", {}, async (page) => {
+      await page.waitForLoadState("networkidle");
+      await page.getByRole("button", { name: "Tune this model" }).click();
+      await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+      const picker = page.getByRole("combobox", { name: "Maker and product" });
+      await picker.fill("simple-pid");
+      await page.getByRole("option").first().waitFor();
+      await picker.press("Enter");
+      const search = await slowSearch(page);
+      const before = page.url();
+      await page.getByRole("button", { name: "Design for this controller" }).click();
+      await page.getByRole("heading", { name: "Searching for the best controller: 40 %" }).waitFor();
+      assert.equal(page.url(), before, "the present design stays");
+      assert.ok(await page.locator("table.typed").isVisible());
+      if (end === "ended") {
+        search.letGo();
+        await page.waitForFunction((was) => location.href !== was, before);
+      } else {
+        await page.getByRole("button", { name: "Cancel" }).click();
+        await page.getByText("The search was stopped; the design stays as it was.").waitFor();
+        assert.ok(search.wasStopped());
+        assert.equal(page.url(), before);
+      }
+      await page.getByRole("button", { name: "Cancel" }).waitFor({ state: "hidden" });
+    });
+  });

@@ -217,7 +217,7 @@ test("the part that counts is chosen by dragging over the plot; with Shift dragg
     assert.ok(from > 100 && from < 300 && to > 450 && to < 650, `${from} to ${to}`);
     assert.equal(Math.round(Number(await page.getByLabel("Use from (s)", { exact: true }).inputValue())), Math.round(from));
     const used = identified();
-    await page.getByRole("button", { name: "Use this step (300 s)" }).click();
+    await page.getByRole("combobox", { name: "Use one step alone" }).selectOption({ label: "at 300 s" });
     const step = (await used).request().postDataJSON().record;
     assert.equal(step.from, 180);
     assert.equal(step.to, 499);

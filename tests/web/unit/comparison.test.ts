@@ -7,7 +7,8 @@ import { csvText } from "../../../web/src/plot/export.ts";
 import { spark } from "../../../web/src/plot/spark.ts";
 import { linkOf } from "../../../web/src/form/link.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
-import { durationWords, keptWords } from "../../../web/src/words/kept_for.ts";
+import { keptWords } from "../../../web/src/views/link_menu.ts";
+import { durationWords } from "../../../web/src/words/numbers.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
 import {
   excessText,

@@ -1,4 +1,5 @@
 import assert from "node:assert/strict";
+import { formatError } from "../../../web/src/words/numbers.ts";
 import test from "node:test";
 import { withTraces } from "../../../web/src/api/plants.ts";
 import type { Candidate, IdentifyRequest, Model, Preview, TuningRequest } from "../../../web/src/api/types.ts";
@@ -272,4 +273,11 @@ test("what the tab's storage holds is a record, or is passed over", () => {
   assert.deepEqual(readTest(JSON.parse(JSON.stringify(test))), test);
   const others = [null, 3, "t,u,y", {}, { record: null }, { record: "t,u,y" }];
   for (const other of others) assert.equal(readTest(other), null);
+});
+
+test("an error that no digit of the value shows is told as exact", () => {
+  assert.equal(formatError(1.9e-9, 40), "exact");
+  assert.equal(formatError(0, 40), "exact");
+  assert.equal(formatError(0.5, 40), "0.50");
+  assert.equal(formatError(undefined, 40), "–");
 });

@@ -62,12 +62,19 @@ export function comparisonTable(events: ComparisonEvents): ComparisonTable {
   const notes = h("ol", { class: "footnotes" });
   const notesCount = h("summary", {});
   const folded = h("details", { class: "missing" }, notesCount, notes);
-  const element = h(
-    "div",
-    {},
-    h("div", { class: "comparison-scroll", tabindex: 0, role: "region", "aria-label": "Comparison table" }, table),
-    folded,
-  );
+  const scroller = h("div", { class: "comparison-scroll", tabindex: 0, role: "region", "aria-label": "Comparison table" }, table);
+  const cue = h("p", { class: "hint scroll-cue", hidden: true });
+  const element = h("div", {}, scroller, cue, folded);
+  scroller.addEventListener("scroll", tellMore, { passive: true });
+  new ResizeObserver(() => requestAnimationFrame(tellMore)).observe(scroller);
+
+  /** How many rows are below the visible part of the table. */
+  function tellMore(): void {
+    const end = scroller.scrollTop + scroller.clientHeight;
+    const below = [...table.tBodies].flatMap((body) => [...body.rows]).filter((row) => row.offsetTop + row.offsetHeight / 2 > end);
+    cue.hidden = below.length === 0;
+    cue.textContent = `${below.length} more ${below.length === 1 ? "row" : "rows"} below: scroll the table.`;
+  }
 
   function heading(id: string, label: string, meaning: string, name = ""): HTMLElement {
     const button = h(

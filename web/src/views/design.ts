@@ -1,4 +1,5 @@
 // Design: the verdict, the settings to enter, the figures and the plots of a job; its progress while it runs.
+import { cancelJob } from "../api/jobs.ts";
 import { isRangeRequest } from "../api/range.ts";
 import { isFinal } from "../api/types.ts";
 import type { Job, Result, TuningRequest } from "../api/types.ts";
@@ -54,7 +55,7 @@ export interface DesignEvents extends JobEvents {
   /** Tunes another request and shows that job. */
   onTune(request: TuningRequest): Promise<void>;
   /** Tunes again and replaces this result; throws if the entry with that index gets none. */
-  onRetune(request: TuningRequest, index: number): Promise<Job | null>;
+  onRetune(request: TuningRequest, index: number, onWaiting: (job: Job) => void): Promise<Job | null>;
 }
 
 export function designView(store: Store, announce: (sentence: string) => void, events: DesignEvents): View {
@@ -64,7 +65,9 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const verdict = h("section", { class: "verdict", "aria-label": "Verdict" });
   const cures = cureButtons((request) => events.onTune(request).catch(complain));
   const range = rangeJobCard(announce);
-  const progress = progressCard(announce, () => void cancel());
+  const progress = progressCard(announce, () => void (waiting ? cancelJob(waiting.id).catch(complain) : cancel()));
+  /** The job that is to replace the displayed one. */
+  let waiting: Job | null = null;
   let mainFigures: HTMLElement = h("div", {});
   let otherFigures: HTMLElement = h("div", {});
   const figures = h(
@@ -100,7 +103,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     },
     onHold: plots.hold,
     onKeep: async (request, index) => {
-      const job = await events.onRetune(request, index);
+      const job = await replace(request, index);
       return job && { job, index };
     },
   });
@@ -135,11 +138,25 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   async function retune(lambda: number): Promise<void> {
     if (!finished || !screen) return;
     const request = screen.request ?? {};
-    await events.onRetune(withLambda(request, screen.result, screen.index, lambda, store.get().methods), screen.index);
+    await replace(withLambda(request, screen.result, screen.index, lambda, store.get().methods), screen.index);
+  }
+
+  /** Designs again in this job's place; a search that takes long shows its progress, and can be stopped. */
+  async function replace(request: TuningRequest, index: number): Promise<Job | null> {
+    const showWaiting = (job: Job | null): void => {
+      waiting = job;
+      progress.element.hidden = !job;
+      if (job) progress.show(job);
+    };
+    try {
+      return await events.onRetune(request, index, showWaiting);
+    } finally {
+      showWaiting(null);
+    }
   }
 
   async function retuneWhole(request: TuningRequest): Promise<void> {
-    if (screen) await events.onRetune(request, screen.index);
+    if (screen) await replace(request, screen.index);
   }
 
   function showFigures(result: Result, listed: number[], drawn: Drawn[], names: string[], units: UnitNames, held: boolean): void {
@@ -249,7 +266,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const job = workspace.job;
     trouble.hidden = workspace.jobTrouble === "";
     trouble.textContent = workspace.jobTrouble;
-    progress.element.hidden = !job || isFinal(job.status);
+    progress.element.hidden = !waiting && (!job || isFinal(job.status));
     verdict.hidden = !job || !isFinal(job.status);
     title.show(job, job?.result?.controllers?.length ? selectedEntry(job.result, workspace) : null);
     cures.show(job);

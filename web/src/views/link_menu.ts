@@ -5,7 +5,7 @@ import type { Job, TuningRequest } from "../api/types.ts";
 import { closesItself, h } from "../dom.ts";
 import { linkOf } from "../form/link.ts";
 import { formatRoute } from "../routes.ts";
-import { keptWords } from "../words/kept_for.ts";
+import { durationWords } from "../words/numbers.ts";
 import { copyButton } from "./copy.ts";
 
 export interface LinkMenu {
@@ -48,4 +48,16 @@ export function linkMenu(announce: (sentence: string) => void): LinkMenu {
       ofModel.hidden = holds.hidden = whole === null;
     },
   };
+}
+
+const local = (time: Date): string => time.toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
+
+/** `finished`: when the job ended, null before; `retention`: of jobs that succeeded, in s, 0 without limit; undefined if
+    the service does not say. */
+export function keptWords(finished: string | null, retention: number | undefined): string {
+  if (retention === undefined) return "The link works as long as the service keeps the job.";
+  if (retention === 0) return "The link works until the job is deleted; the service keeps jobs without limit.";
+  const kept = `the service keeps a job for ${durationWords(retention)} after its end`;
+  if (finished === null) return `The link works for a time: ${kept}.`;
+  return `The link works until ${local(new Date(Date.parse(finished) + 1000 * retention))}: ${kept}.`;
 }

@@ -2,7 +2,7 @@
 import type { Model } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { plantFormula, rounded } from "../form/formula.ts";
-import { formatNumber } from "../words/numbers.ts";
+import { formatError, formatNumber } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { parameterUnit, plantTitle, plantWords } from "../words/plant.ts";
 
@@ -36,7 +36,7 @@ export function modelResult(model: Model, units: UnitNames): HTMLElement {
             {},
             h("th", { scope: "row" }, unit ? `${name} (${unit})` : name),
             h("td", {}, formatNumber(value, 4)),
-            h("td", {}, formatNumber(model.standard_errors?.[name], 2)),
+            h("td", {}, formatError(model.standard_errors?.[name], value)),
           );
         }),
       ),

@@ -42,9 +42,15 @@ export const exactText = (value: number): string => String(Number(value.toPrecis
 /** An error below this share of the value is not shown. */
 const NEGLIGIBLE = 1e-6;
 
+const isNegligible = (error: number, value: number): boolean => !(error > NEGLIGIBLE * Math.abs(value));
+
+/** A standard error by itself: "exact" if no digit of the value shows it. */
+export const formatError = (error: number | null | undefined, value: number): string =>
+  typeof error === "number" && isNegligible(error, value) ? "exact" : formatNumber(error, 2);
+
 /** "2.00003 ± 0.00048": the error with two digits, the value with as many decimals. */
 export function formatUncertain(value: number, error: number | null | undefined): string {
-  if (typeof error !== "number" || !Number.isFinite(error) || !(error > NEGLIGIBLE * Math.abs(value)))
+  if (typeof error !== "number" || !Number.isFinite(error) || isNegligible(error, value))
     return formatParameter(value);
   const decimals = 1 - Math.floor(Math.log10(error));
   const size = Math.max(Math.abs(value), error);
@@ -98,4 +104,18 @@ export function quotient(top: string, bottom: string): string {
 
 export function product(a: string, b: string): string {
   return [a, b].filter(Boolean).join(" ");
+}
+
+const DURATIONS = [
+  ["day", 86_400],
+  ["hour", 3600],
+  ["minute", 60],
+  ["second", 1],
+] as const;
+
+/** "7 days", "36 hours": in the largest unit of which it is a whole number. */
+export function durationWords(seconds: number): string {
+  const [name, size] = DURATIONS.find(([, length]) => seconds >= length && seconds % length === 0) ?? DURATIONS[3];
+  const count = Math.round(seconds / size);
+  return `${count} ${name}${count === 1 ? "" : "s"}`;
 }

@@ -37,6 +37,8 @@ const NEED_WORDS: Record<Need, string> = {
   sample_time: "the sample time",
 };
 
+const RANGE_WORDS = " A range is the lowest and the highest value that the controller is set up for, such as 0 to 200 °C and 0 to 100 %.";
+
 /** The missing facts, and the reason for each; "" for none. */
 export function needSentence(missing: readonly Need[]): string {
   if (missing.length === 0) return "";
@@ -44,7 +46,7 @@ export function needSentence(missing: readonly Need[]): string {
   const why = missing.includes("sample_time")
     ? "its parameters use them"
     : "its gain is in percent or counts of them";
-  return `Give ${list}: ${missing.length === 1 ? why.replace("them", "it") : why}. Until then designs are made for an ideal controller.`;
+  return `Give ${list}: ${missing.length === 1 ? why.replace("them", "it") : why}. Until then designs are made for an ideal controller.${missing.some((need) => need !== "sample_time") ? RANGE_WORDS : ""}`;
 }
 
 /** A setting as typed. */

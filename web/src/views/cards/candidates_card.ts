@@ -105,7 +105,8 @@ export function candidatesCard(methods: string[], first: CandidateChoice, events
       const name = uniqueId("candidate");
       const only: Candidate = { ...model };
       const items = candidates.map((candidate, at) => item(candidate, at, preferred, units, name));
-      const folded = items.filter((_, at) => at !== index && candidates[at]!.much_worse);
+      const isWeak = ({ much_worse, undetermined }: Candidate): boolean => much_worse || (undetermined?.length ?? 0) > 0;
+      const folded = items.filter((_, at) => at !== index && at !== preferred && isWeak(candidates[at]!));
       list.replaceChildren(
         h("legend", { class: "visually-hidden" }, "Which model to use"),
         ...(items.length > 0 ? items.filter((row) => !folded.includes(row)) : [item(only, -1, -1, units, name)]),
@@ -114,7 +115,7 @@ export function candidatesCard(methods: string[], first: CandidateChoice, events
               h(
                 "details",
                 {},
-                h("summary", {}, `${folded.length} that ${folded.length === 1 ? "fits" : "fit"} worse`),
+                h("summary", {}, weakWords(candidates.filter((_, at) => folded.includes(items[at]!)))),
                 folded,
               ),
             ]
@@ -129,6 +130,14 @@ export function candidatesCard(methods: string[], first: CandidateChoice, events
       all.disabled = busy;
     },
   };
+}
+
+/** "3 that fit worse, or that the record does not determine". */
+function weakWords(folded: Candidate[]): string {
+  const [worse, open] = [folded.some(({ much_worse }) => much_worse), folded.some(({ undetermined }) => undetermined?.length)];
+  const one = folded.length === 1;
+  const reasons = [worse ? `${one ? "fits" : "fit"} worse` : "", open ? `the record does not determine` : ""].filter(Boolean);
+  return `${folded.length} that ${reasons.join(", or that ")}`;
 }
 
 const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);

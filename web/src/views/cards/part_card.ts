@@ -31,7 +31,7 @@ export interface PartCard {
   faults(): FieldError[];
 }
 
-const MAX_STEPS = 12;
+const MAX_STEPS = 100;
 
 export function partCard(errors: FormErrors, onMove: () => void, onRelease: () => void): PartCard {
   let extent: Part | null = null;
@@ -44,14 +44,23 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
         pointer: () => `/record/${name}`,
         spoken: (value) => `${label} ${formatParameter(value)} ${unit}`,
         onMove,
-        onRelease,
+        onRelease() {
+          showStep();
+          onRelease();
+        },
       },
       errors,
     );
   const from = edge("from", "Use from");
   const to = edge("to", "Use up to");
   const all = h("button", { type: "button", class: "quiet", onclick: () => useAll() }, "Use all of it");
-  const steps = h("div", { class: "steps", hidden: true });
+  let list: Step[] = [];
+  const choice = h("select", { id: uniqueId("step") });
+  const steps = h("div", { class: "steps", hidden: true }, h("label", { for: choice.id }, "Use one step alone"), choice);
+  choice.addEventListener("change", () => {
+    const step = list[Number(choice.value)];
+    if (choice.value !== "" && step) useStep(step);
+  });
   const title = h("h2", { id: uniqueId("part"), class: "visually-hidden" }, "Part of the record to use");
   const element = h("section", { class: "part", "aria-labelledby": title.id }, title, from.element, to.element, all, steps);
 
@@ -59,6 +68,7 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
     if (!extent) return;
     from.set(extent.from);
     to.set(extent.to);
+    showStep();
     onRelease();
   }
 
@@ -68,6 +78,12 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
     onRelease();
   }
 
+  /** The step whose part is chosen, if it is that of one. */
+  function showStep(): void {
+    const at = list.findIndex((step) => step.from === from.value() && step.to === to.value());
+    choice.value = at < 0 ? "" : String(at);
+  }
+
   function read(): Part | null {
     if (!extent || (from.value() <= extent.from && to.value() >= extent.to)) return null;
     return { from: from.value(), to: to.value() };
@@ -75,19 +91,15 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
 
   return {
     element,
-    setSteps(list) {
+    setSteps(found) {
+      list = found;
       // One step needs no choice, and very many steps are another kind of test.
       steps.hidden = list.length < 2 || list.length > MAX_STEPS;
-      steps.replaceChildren(
-        ...list.map((step) =>
-          h(
-            "button",
-            { type: "button", class: "quiet", onclick: () => useStep(step) },
-            "Use this step",
-            ` (${formatParameter(step.at)} ${unit})`,
-          ),
-        ),
+      choice.replaceChildren(
+        h("option", { value: "" }, `choose one of ${list.length}`),
+        ...list.map((step, index) => h("option", { value: index }, `at ${formatParameter(step.at)} ${unit}`)),
       );
+      showStep();
     },
     setUnit(next) {
       unit = next;

@@ -4,7 +4,7 @@ import { newest } from "../../api/latest.ts";
 import { getProduct } from "../../api/products.ts";
 import { controllerInRecord } from "../../api/records.ts";
 import type { FieldError, Filter, GivenController, RecordedTest, SettingValue, TuningRequest, Units } from "../../api/types.ts";
-import { foldedOnPhones, h, uniqueId } from "../../dom.ts";
+import { foldingCard, h, uniqueId } from "../../dom.ts";
 import { choiceField, textField } from "../../form/controls.ts";
 import { openAround } from "../../form/errors.ts";
 import type { FormErrors } from "../../form/errors.ts";
@@ -259,23 +259,26 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
 
   const typedFields = h(
     "div",
-    { class: "fields" },
+    { class: "fields today-fields" },
     form.element,
     slots.map((slot) => slot.element),
     delta.element,
     filter.element,
   );
-  const element = foldedOnPhones(
+  const element = foldingCard(
     "Today's settings",
-    "optional, compared with every proposal",
+    "optional, for comparison",
+    true,
     fromRecord,
     typedFields,
     own.element,
     kept.element,
   );
-  const loop = foldedOnPhones(
+  const loop = foldingCard(
     "Name and units",
     "optional",
+    // On a phone it would push the cards of the process further down.
+    !window.matchMedia("(max-width: 700px)").matches,
     h("div", { class: "fields names" }, name.element, time.element, u.element, y.element),
   );
   label();

@@ -13,6 +13,13 @@ const press = (page, name) => page.getByRole("button", { name, exact: true }).cl
 const today = (page) => page.getByRole("region", { name: /^Today's settings/ });
 const offer = (page) => today(page).getByRole("checkbox", { name: "Use as today's settings" });
 
+/** Drops the trend, and waits for Identify: on Start the offer is there before. */
+async function dropped(page) {
+  await dropFile(page, ".drop", "trend.csv", loopUnderPI());
+  await page.getByRole("button", { name: "Use and tune" }).waitFor({ timeout: 120_000 });
+  await offer(page).waitFor();
+}
+
 /** The steps of a process engineer; each leaves the page at rest. */
 const STEPS = {
   async controller(page, who) {
@@ -30,7 +37,7 @@ const STEPS = {
   },
   async tune(page, who) {
     await who.click("button", "Use and tune");
-    await page.locator("table.typed tbody tr").first().waitFor();
+    await page.locator("table.typed tbody tr").first().waitFor({ timeout: 120_000 });
   },
   async redesign(page, who) {
     await who.click("button", "Design for this controller");
@@ -81,8 +88,7 @@ test("a product chosen on Start is the form of today's settings, and what was ty
     assert.equal(await today(page).getByLabel("RESET (s)", { exact: true }).inputValue(), "80");
     await giveMeasurementRange(page, who, "0", "200");
 
-    await dropFile(page, ".drop", "trend.csv", loopUnderPI());
-    await offer(page).waitFor();
+    await dropped(page);
     assert.equal(await offer(page).isChecked(), false, "what is typed counts");
     assert.equal(await today(page).getByLabel("GAIN (%/%)", { exact: true }).inputValue(), "1,5");
     await press(page, "Use and tune");
@@ -103,8 +109,7 @@ test("settings typed in a textbook form stay in it when a product is chosen; hal
     assert.equal(await today(page).getByLabel("Form", { exact: true }).inputValue(), "ideal");
     const range = page.getByRole("group", { name: /^Measurement range/ });
     await who.fill(range.getByRole("textbox", { name: "from" }), "0");
-    await dropFile(page, ".drop", "trend.csv", loopUnderPI());
-    await offer(page).waitFor();
+    await dropped(page);
     assert.equal(await range.getByRole("textbox", { name: "from" }).inputValue(), "0");
     await who.fill(range.getByRole("textbox", { name: "to" }), "200");
     await press(page, "Use and tune");
@@ -126,8 +131,7 @@ test("a range that was given in another unit is not taken along by a file that n
     await press(page, "Tune this model");
     await page.locator("table.typed tbody tr").first().waitFor();
     await page.getByRole("link", { name: "Start", exact: true }).click();
-    await dropFile(page, ".drop", "trend.csv", loopUnderPI());
-    await offer(page).waitFor();
+    await dropped(page);
     const range = page.getByRole("group", { name: "Measurement range (°C)" });
     assert.equal(await range.getByRole("textbox", { name: "to" }).inputValue(), "");
   });
@@ -144,8 +148,7 @@ for (const [window, options] of [
       await chooseProduct(page, person(page), "deltav standard", DELTAV);
       assert.equal(await overflow(page), 0);
       assert.deepEqual(await accessibilityViolations(page), []);
-      await dropFile(page, ".drop", "trend.csv", loopUnderPI());
-      await offer(page).waitFor();
+      await dropped(page);
       assert.equal(await overflow(page), 0);
       assert.deepEqual(await accessibilityViolations(page), []);
     });

@@ -45,12 +45,12 @@ void write_figures(const TuningEntry& entry, Writer& out) {
     write_figure("load_IAE", verdict::performance_of(entry).load.IAE, out);
 }
 
-/// Writes the settings to enter: the controller, and the texts to type if it is for a product.
-void write_settings(const TuningEntry& best, Writer& out) {
+/// Writes the settings: the controller, and the texts to type if it is in a product.
+void write_settings(const TuningEntry& entry, Writer& out) {
     out.key("controller");
-    controller_contract().write(best.evaluation->controller, out);
-    if (!best.on_device || best.on_device->fitted.typed.empty()) return;
-    const device::Fitted& fitted = best.on_device->fitted;
+    controller_contract().write(entry.evaluation->controller, out);
+    if (!entry.on_device || entry.on_device->fitted.typed.empty()) return;
+    const device::Fitted& fitted = entry.on_device->fitted;
     out.key("to_type").begin_object();
     for (const product::Setting& setting : fitted.typed) {
         const product::Parameter* parameter = product::parameter_named(*fitted.product, setting.name);
@@ -93,6 +93,7 @@ std::string Outline::of(const TuningResult& result) const {
     const auto today = std::ranges::find_if(result.controllers, is_todays);
     if (today != result.controllers.end() && today->evaluation) {
         out.key("today").begin_object();
+        write_settings(*today, out);
         write_figures(*today, out);
         out.end_object();
     }

@@ -261,7 +261,7 @@ private:
         add_event_routes(router_, jobs_, places_);
         add_trace_routes(router_, jobs_, readers_);
         add_code_routes(router_, jobs_, readers_);
-        add_report_routes(router_, jobs_, readers_);
+        add_report_routes(router_, jobs_, batches_, readers_);
         add_queue_routes(router_, jobs_);
         add_batch_routes(router_, batches_, jobs_, places_, listers_, batch_lane_, policy_,
                          {{config_.job_timeout_s, config_.max_timeout_s}, config_.max_body});

@@ -98,7 +98,6 @@ Loops::Loops(const LoopOptions& options) {
         if (!tune_.contains("method")) tune_["method"] = MethodRequest{}.method;
         tail.key("tune").raw(Json::array({tune_}).dump());
     }
-    if (!implement_.empty()) tail.key("implement").raw(implement_.dump());
     if (!timeout_.is_null()) tail.key("timeout_s").raw(timeout_.dump());
     tail.end_object();
     tail_ = tail.take().substr(1);
@@ -112,7 +111,7 @@ std::optional<Problem> Loops::check_options() const {
                       in_quotes(names_given_twice_.front()) + " is given twice, or nests too deep. A CSV of loops has "
                                                               "one method; batches of JSON may have several."}});
     }
-    const auto tried = prepare_entry(request("", {1, 1, 1}, nullptr));
+    const auto tried = prepare_entry(request("", {1, 1, 1}, implement_, nullptr));
     const auto* problem = std::get_if<Problem>(&tried);
     if (problem == nullptr) return std::nullopt;
     Problem named = *problem;
@@ -124,7 +123,8 @@ std::optional<Problem> Loops::check_options() const {
     return named;
 }
 
-std::string Loops::request(std::string_view name, const std::array<double, 3>& plant, const Json& today) const {
+std::string Loops::request(std::string_view name, const std::array<double, 3>& plant, const Json& implement,
+                           const Json& today) const {
     Writer out;
     out.begin_object();
     if (!name.empty()) out.key("name").text(name);
@@ -137,6 +137,7 @@ std::string Loops::request(std::string_view name, const std::array<double, 3>& p
     out.key("type").text("fopdt");
     for (std::size_t i = 0; i < plant.size(); ++i) out.key(kTitles[i + kGain]).number(plant[i]);
     out.end_object();
+    if (!implement.empty()) out.key("implement").raw(implement.dump());
     if (!today.is_null()) out.key("baseline").raw(today.dump());
     std::string text = out.take();
     if (tail_.size() > 1) text += ',';
@@ -261,9 +262,10 @@ std::optional<Problem> Loops::find_columns(long number, const std::vector<std::s
         if (!column)
             return refused(
                 where + in_quotes(headings[i]) +
-                " is not a column of loops. The columns are name, K, T and L; of today's settings Kp, Ti, Td, Tf, b, c "
-                "and form, or product and its own settings as \"today GAIN\". Remove that column: "
-                "method and limits are set once for all loops.");
+                " is not a column of loops. The columns are name, K, T and L; of the controller product, sample time, "
+                "y "
+                "low, y high, u low and u high; of today's settings Kp, Ti, Td, Tf, b, c and form, or a product's own "
+                "as \"today GAIN\". Remove that column: method and limits are set once for all loops.");
         if (at_[*column] != kMissing) return refused(where + "two columns say " + kTitles[*column] + ". Remove one.");
         at_[*column] = i;
         units[*column] = heading.unit;
@@ -277,13 +279,13 @@ std::optional<Problem> Loops::find_columns(long number, const std::vector<std::s
             where + listed(missing, "and") + (missing.size() == 1 ? " is" : " are") +
             " missing. Each loop is K e^(-L s)/(T s + 1), with K the gain, T the time constant, L the dead time.");
     if (auto problem = find_unit(where, units)) return problem;
-    const bool own = std::ranges::any_of(todays_, [](const TodaysColumn& one) { return one.member.empty(); });
-    if (own) todays_product_ = implement_.value("product", "");
-    const bool named = std::ranges::any_of(todays_, [](const TodaysColumn& one) { return one.member == "product"; });
-    if (own && !named && todays_product_.empty())
-        return refused(where +
-                       "columns of a product's own settings need to know the product. Add a column product, "
-                       "with an id such as emerson_deltav_standard.");
+    const auto any = [&](const auto& fits) { return std::ranges::any_of(todays_, fits); };
+    own_settings_ = any([](const TodaysColumn& one) { return one.member.empty(); });
+    const bool ranges = any([](const TodaysColumn& one) { return one.member.find("_span/") != std::string::npos; });
+    const bool named = any([](const TodaysColumn& one) { return one.member == "product"; });
+    if ((own_settings_ || ranges) && !named && !implement_.contains("product"))
+        return refused(where + (own_settings_ ? "columns of a product's own settings" : "columns of ranges") +
+                       " need to know the product. Add a column product, with an id such as emerson_deltav_standard.");
     headed_ = true;
     return std::nullopt;
 }
@@ -293,7 +295,7 @@ std::optional<Problem> Loops::find_unit(const std::string& where, const std::arr
     std::vector<std::pair<std::string, std::string>> times = {{"T", units[kLag]}, {"L", units[kDelay]}};
     const bool product = std::ranges::any_of(todays_, [](const TodaysColumn& one) { return one.member == "product"; });
     for (const TodaysColumn& one : todays_)
-        if (one.is_time() && !product) times.emplace_back(one.name, one.unit);
+        if ((one.is_time() && !product) || one.member == "sample_time") times.emplace_back(one.name, one.unit);
     std::string first;
     for (const auto& [name, unit] : times) {
         if (unit.empty()) continue;
@@ -361,9 +363,15 @@ void Loops::read_row(const Held& row, std::vector<RawEntry>& entries) {
         std::array<double, 3> plant{};
         for (const Column column : {kGain, kLag, kDelay})
             plant[column - kGain] = read_number(cell(column), kTitles[column], faults);
-        const Json today = todays_settings(todays_, cells_, sign_, todays_product_, faults);
+        // The line's own controller comes before that of all loops, in whose place today's settings are typed only if
+        // they have its names.
+        const Json own = own_controller(todays_, cells_, sign_, faults);
+        Json implement = implement_;
+        implement.update(own);
+        const std::string product = (own_settings_ ? implement : own).value("product", "");
+        const Json today = todays_settings(todays_, cells_, sign_, product, faults);
         if (faults.empty())
-            entry.text = request(name, plant, today);
+            entry.text = request(name, plant, implement, today);
         else
             entry.fault = not_valid(kTitle, std::move(faults));
     }

@@ -52,8 +52,9 @@ private:
     void find_sign();
     void read_row(const Held& row, std::vector<RawEntry>& entries);
     double read_number(std::string_view cell, const char* name, std::vector<FieldError>& faults) const;
-    /// `today`: the baseline; null if there is none.
-    std::string request(std::string_view name, const std::array<double, 3>& plant, const Json& today) const;
+    /// `implement`: an object, empty if there is none. `today`: the baseline; null if there is none.
+    std::string request(std::string_view name, const std::array<double, 3>& plant, const Json& implement,
+                        const Json& today) const;
     std::optional<Problem> find_unit(const std::string& where, const std::array<std::string, kColumns>& units);
     std::string_view cell(Column column) const;
     void split(std::string_view line);
@@ -69,7 +70,7 @@ private:
     bool headed_ = false;
     std::array<std::size_t, kColumns> at_{};
     std::vector<TodaysColumn> todays_;
-    std::string todays_product_;  ///< for rows that name no product; "" for controllers by their form
+    bool own_settings_ = false;  ///< some of today's settings have the names of a product
     std::size_t width_ = 0;
     std::string time_unit_;
 

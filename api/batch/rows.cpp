@@ -6,6 +6,8 @@
 #include "api/csv/csv_writer.h"
 #include "api/json/json.h"
 #include "api/json/writer.h"
+#include "engine/number_text.h"
+#include "engine/request/entry.h"
 
 namespace tunewright::api {
 namespace {
@@ -46,9 +48,10 @@ void add_text(const Json& value, const char* pointer, CsvWriter& out) {
 
 /// Columns that were added later stand at the end, so that the earlier ones keep their positions.
 constexpr std::array kLater = {"time_unit",        "filter",         "setpoint_filter_T",
-                               "settings_to_type", "today_load_IAE", "gain_over_today_percent"};
+                               "settings_to_type", "today_load_IAE", "gain_over_today_percent",
+                               "worst_Ms",         "today_settings", "today_Ms"};
 
-/// The settings for the user's own controller as text: "GAIN 2.328 %/%; RESET 93.12 s".
+/// The settings for the user's own controller as text, "GAIN 2.328 %/%; RESET 93.12 s"; "" without a product.
 std::string to_type(const Json& entry) {
     const Json* texts = at(entry, "/as_entered/as_typed");
     const Json* units = at(entry, "/as_entered/units");
@@ -66,13 +69,46 @@ const Json* load_of(const Json& entry) {
     return at(entry, entry.contains("implemented") ? "/implemented/performance/load/IAE" : "/performance/load/IAE");
 }
 
-/// The load IAE of today's settings; null if the result has none.
-const Json* todays_load(const Json& result) {
+/// The same, or the controller with the unit of time: "Kp 0.9; Ti 12 min".
+std::string settings_text(const Json& result, const Json& entry) {
+    std::string out = to_type(entry);
+    const Json* controller = at(entry, "/controller");
+    if (!out.empty() || controller == nullptr) return out;
+    const Json* unit = at(result, "/units/time");
+    const std::string time =
+        unit != nullptr && unit->is_string() ? unit->get<std::string>() : Units{}.time_or_default();
+    for (const char* name : {"Kp", "Ki", "Kd", "Ti", "Td"}) {
+        const Json* value = at(*controller, (std::string("/") + name).c_str());
+        if (value == nullptr || !value->is_number()) continue;
+        out += (out.empty() ? "" : "; ") + std::string(name) + " " + tunewright::text(value->get<double>(), 6);
+        if (*name == 'T') out += " " + time;
+    }
+    return out;
+}
+
+/// The entry of today's settings; null if the result has none.
+const Json* todays_entry(const Json& result) {
     const Json* entries = at(result, "/controllers");
     if (entries == nullptr) return nullptr;
     for (const Json& entry : *entries)
-        if (entry.value("method", "") == "baseline") return load_of(entry);
+        if (entry.value("method", "") == kBaselineMethod) return &entry;
     return nullptr;
+}
+
+/// Ms of the loop: as implemented if that is known.
+const Json* Ms_of(const Json& entry) {
+    return at(entry, entry.contains("implemented") ? "/implemented/robustness/Ms" : "/robustness/Ms");
+}
+
+/// The largest Ms on any plant that the loop may meet.
+const Json* worst_Ms_of(const Json& entry) {
+    const Json *worst = at(entry, "/region/worst_Ms"), *own = Ms_of(entry);
+    if (worst == nullptr || own == nullptr || !worst->is_number() || !own->is_number()) return worst ? worst : own;
+    return worst->get<double>() > own->get<double>() ? worst : own;
+}
+
+void add_number(const Json* value, CsvWriter& out) {
+    value != nullptr && value->is_number() ? out.number(value->get<double>()) : out.empty();
 }
 
 void add_time_unit(const Json& result, CsvWriter& out) {
@@ -86,16 +122,20 @@ void add_time_unit(const Json& result, CsvWriter& out) {
 void add_later(const Json& result, const Json& entry, CsvWriter& out) {
     add_time_unit(result, out);
     add_text(entry, "/controller/filter/type", out);
-    const Json* lag = at(entry, "/controller/setpoint_filter/T");
-    lag != nullptr && lag->is_number() ? out.number(lag->get<double>()) : out.empty();
+    add_number(at(entry, "/controller/setpoint_filter/T"), out);
     const std::string typed = to_type(entry);
     typed.empty() ? out.empty() : out.text(typed);
-    const Json *today = todays_load(result), *load = load_of(entry);
+    const Json* todays = todays_entry(result);
+    const Json *today = todays == nullptr ? nullptr : load_of(*todays), *load = load_of(entry);
     const bool known = today != nullptr && today->is_number();
     known ? out.number(today->get<double>()) : out.empty();
     const bool compared = known && load != nullptr && load->is_number() && today->get<double>() > 0 &&
-                          entry.value("method", "") != "baseline";
+                          entry.value("method", "") != kBaselineMethod;
     compared ? out.number(100 * (1 - load->get<double>() / today->get<double>())) : out.empty();
+    add_number(worst_Ms_of(entry), out);
+    const std::string before = todays == nullptr ? "" : settings_text(result, *todays);
+    before.empty() ? out.empty() : out.text(before);
+    add_number(todays == nullptr ? nullptr : worst_Ms_of(*todays), out);
 }
 
 /// `entry` of a result; an empty object if there is none.
@@ -103,10 +143,7 @@ void add_line(const ResultRow& row, const Json& result, const Json& entry, const
     out.integer(row.index).text(row.id).text(row.name).text(row.status);
     add_text(entry, "/method", out);
     add_text(entry, "/controller/form", out);
-    for (const Column& column : kFigures) {
-        const Json* figure = at(entry, column.pointer);
-        figure != nullptr && figure->is_number() ? out.number(figure->get<double>()) : out.empty();
-    }
+    for (const Column& column : kFigures) add_number(at(entry, column.pointer), out);
     const Json* warnings = at(entry, "/warnings");
     warnings != nullptr ? out.integer(static_cast<long long>(warnings->size())) : out.empty();
     add_text(error, "/detail", out);

@@ -11,7 +11,7 @@ namespace {
 
 /// Headings in lower case, and their members in `baseline`.
 using Member = std::pair<std::string_view, const char*>;
-constexpr std::array<Member, 14> kMembers = {{{"kp", "Kp"},
+constexpr std::array<Member, 15> kMembers = {{{"kp", "Kp"},
                                               {"ki", "Ki"},
                                               {"kd", "Kd"},
                                               {"ti", "Ti"},
@@ -21,6 +21,7 @@ constexpr std::array<Member, 14> kMembers = {{{"kp", "Kp"},
                                               {"c", "c"},
                                               {"form", "form"},
                                               {"product", "product"},
+                                              {"sample time", "sample_time"},
                                               {"y low", "y_span/0"},
                                               {"y high", "y_span/1"},
                                               {"u low", "u_span/0"},
@@ -34,7 +35,6 @@ std::size_t length_of_mark(std::string_view name) {
 }
 
 bool is_word(const TodaysColumn& column) { return column.member == "form" || column.member == "product"; }
-bool is_range(const TodaysColumn& column) { return column.member.find("_span/") != std::string::npos; }
 
 /// A number, true or false, else the text.
 Json cell_value(std::string_view cell, DecimalSign sign) {
@@ -60,13 +60,21 @@ void put(Json& object, std::string_view path, Json value) {
     object[head][std::string(path.substr(slash + 1))] = std::move(value);
 }
 
-void add_range(const TodaysColumn& column, Json value, Json& baseline) {
+void add_range(const TodaysColumn& column, Json value, Json& implement) {
     const std::string span = column.member.substr(0, column.member.find('/'));
-    if (!baseline.contains(span)) baseline[span] = Json::array({nullptr, nullptr});
-    baseline[span][column.member.ends_with('1') ? 1 : 0] = std::move(value);
+    if (!implement.contains(span)) implement[span] = Json::array({nullptr, nullptr});
+    implement[span][column.member.ends_with('1') ? 1 : 0] = std::move(value);
+}
+
+FieldError no_number(const char* object, const TodaysColumn& column, std::string_view cell) {
+    return {object + column.member, column.name + " is \"" + std::string(cell) + "\"; it must be a number, or empty."};
 }
 
 }  // namespace
+
+bool TodaysColumn::is_of_controller() const {
+    return member == "product" || member == "sample_time" || member.find("_span/") != std::string::npos;
+}
 
 std::optional<TodaysColumn> todays_column(const Heading& heading) {
     std::string name = heading.name;
@@ -84,34 +92,40 @@ std::optional<TodaysColumn> todays_column(const Heading& heading) {
     return TodaysColumn{.name = written, .member = known == kMembers.end() ? "" : known->second, .unit = heading.unit};
 }
 
+Json own_controller(const std::vector<TodaysColumn>& columns, const std::vector<std::string_view>& cells,
+                    DecimalSign sign, std::vector<FieldError>& faults) {
+    Json implement = Json::object();
+    for (const TodaysColumn& column : columns) {
+        const std::string_view cell = cell_of(column, cells);
+        if (!column.is_of_controller() || cell.empty()) continue;
+        Json value = is_word(column) ? Json(std::string(cell)) : cell_value(cell, sign);
+        if (!is_word(column) && !value.is_number())
+            faults.push_back(no_number("/implement/", column, cell));
+        else if (column.member.find('/') != std::string::npos)
+            add_range(column, std::move(value), implement);
+        else
+            implement[column.member] = std::move(value);
+    }
+    return implement;
+}
+
 Json todays_settings(const std::vector<TodaysColumn>& columns, const std::vector<std::string_view>& cells,
                      DecimalSign sign, const std::string& product, std::vector<FieldError>& faults) {
     Json baseline = Json::object();
-    std::string own = product;
-    for (const TodaysColumn& column : columns)
-        if (column.member == "product" && !cell_of(column, cells).empty()) own = cell_of(column, cells);
-    bool given = false;
     for (const TodaysColumn& column : columns) {
         const std::string_view cell = cell_of(column, cells);
-        if (cell.empty() || column.member == "product") continue;
+        if (cell.empty() || column.is_of_controller()) continue;
         Json value = is_word(column) ? Json(std::string(cell)) : cell_value(cell, sign);
-        const bool setting = !own.empty() && !is_range(column);
-        if (!setting && !is_word(column) && !value.is_number()) {
-            faults.push_back({"/baseline/" + column.member,
-                              column.name + " is \"" + std::string(cell) + "\"; it must be a number, or empty."});
-            continue;
-        }
-        given = given || !is_range(column);
-        if (setting)
+        if (!product.empty())
             baseline["settings"][column.name] = std::move(value);
-        else if (is_range(column))
-            add_range(column, std::move(value), baseline);
+        else if (!is_word(column) && !value.is_number())
+            faults.push_back(no_number("/baseline/", column, cell));
         else
             put(baseline, column.member, std::move(value));
     }
-    if (!given) return nullptr;
-    if (!own.empty())
-        baseline["product"] = own;
+    if (baseline.empty()) return nullptr;
+    if (!product.empty())
+        baseline["product"] = product;
     else if (!baseline.contains("form"))
         baseline["form"] = baseline.contains("Ki") ? "parallel" : "ideal";
     return baseline;

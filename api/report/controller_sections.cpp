@@ -6,6 +6,7 @@
 #include "api/report/figures.h"
 #include "api/report/sections.h"
 #include "engine/request/entry.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright::api {
 namespace {
@@ -171,16 +172,31 @@ bool is_own(const Json& finding, const Json& own, const ReportInput& s) {
                              }) == 1;
 }
 
+/// "load iae" for "load_iae".
+std::string in_words(std::string name) {
+    std::ranges::replace(name, '_', ' ');
+    return name;
+}
+
 std::string value_text(const Json& value) {
     if (value.is_object()) {
         std::string parts;
         for (const auto& [name, part] : value.items())
-            parts += (parts.empty() ? "" : ", ") + name + " " + value_text(part);
+            parts += (parts.empty() ? "" : ", ") + in_words(name) + " " + value_text(part);
         return parts;
     }
-    return value.is_string()   ? value.get<std::string>()
+    if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+    return value.is_string()   ? in_words(value.get<std::string>())
            : value.is_number() ? number_text(value.get<double>(), 6)
                                : value.dump();
+}
+
+/// True for an option that only adds data for the page's plots.
+bool only_draws(const std::string& method, const std::string& option) {
+    const TuningMethod* described = find_method(method);
+    return described != nullptr && std::ranges::any_of(described->options, [&](const OptionDescription& one) {
+               return one.name == option && one.draws;
+           });
 }
 
 }  // namespace
@@ -222,13 +238,13 @@ Html effect_section(const ReportInput& s) {
 
 Html method_section(const ReportInput& s) {
     const std::string method = text_at(s.entry.at("method"));
-    Html out =
-        element("p", element("strong", text_at(s.entry.at("title"))) +
-                         (method == kGivenMethod ? ": " : " (" + method + "). ") + text_at(s.entry.at("source")));
+    Html out = element("p", element("strong", text_at(s.entry.at("title"))) + (method == kGivenMethod ? ": " : ". ") +
+                                text_at(s.entry.at("source")));
     std::vector<Html> options;
     if (s.entry.at("options").value().is_object())
         for (const auto& [name, value] : s.entry.at("options").value().items())
-            if (!value.is_null()) options.push_back(name + " " + value_text(value));
+            if (!value.is_null() && !only_draws(method, name))
+                options.push_back(in_words(name) + " " + value_text(value));
     Html line;
     for (const Html& option : options) line += (line.empty() ? Html("Options: ") : Html("; ")) + option;
     if (!line.empty()) out += element("p", line);

@@ -172,11 +172,8 @@ Html responses_section(const ReportInput& s) {
     Html figures;
     for (const Plot& plot : response_plots(s)) figures += drawn(plot);
     if (figures.empty())
-        return section(
-            "Responses",
-            element(
-                "p",
-                "The result has no traces: its request asked for none (evaluate.points), or the loop is unstable."));
+        return section("Responses",
+                       element("p", "The result has no traces: its request asked for none, or the loop is unstable."));
     Html note;
     if (s.today && !s.today->at("responses").at("load").exists())
         note = element("p", "Today's settings have no response to draw; see the figures.");

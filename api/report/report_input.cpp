@@ -5,6 +5,7 @@
 
 #include "api/contract/terms.h"
 #include "engine/request/entry.h"
+#include "engine/request/verdict/finding.h"
 
 namespace tunewright::api {
 namespace {
@@ -12,8 +13,9 @@ namespace {
 const Json kNone;
 
 std::string label(const Json& units, const char* name, const char* fallback) {
-    return units.is_object() && units.contains(name) && units[name].is_string() ? units[name].get<std::string>()
-                                                                                : fallback;
+    return units.is_object() && units.contains(name) && units[name].is_string()
+               ? verdict::printed_unit(units[name].get<std::string>())
+               : fallback;
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ void warn_of_difference(Evaluation& evaluation, const DeviceEntry& on_device) {
     if (moved.empty()) return;
     evaluation.warnings.push_back(
         {"differs-as-built", "The implemented controller, with its rounding and sampling, changes " + moved +
-                                 " from the ideal loop; implemented has the figures of the implemented loop."});
+                                 " from the ideal loop; the figures of both are given."});
 }
 
 }  // namespace

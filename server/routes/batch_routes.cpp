@@ -21,15 +21,6 @@ using http::Response;
 
 constexpr std::size_t kMaxNameLength = 200;
 
-Response no_such_batch(const std::string& id) {
-    return problem_response(404, "There is no batch " + id.substr(0, 64) + "; it may have been deleted.");
-}
-
-bool may_see(const http::Request& request, const BatchSummary& batch) {
-    const std::optional<std::string> owner = visible_owner(request);
-    return !owner || *owner == batch.owner;
-}
-
 /// The batch of the call, in the form that `answer` gives it.
 template <class Answer>
 Response about_batch(Batches& batches, const http::Request& request, const std::string& id, const Answer& answer) {

@@ -15,6 +15,10 @@ Response no_such_job(const std::string& id) {
     return problem_response(404, "There is no job " + id.substr(0, 64) + "; it may have been deleted.");
 }
 
+Response no_such_batch(const std::string& id) {
+    return problem_response(404, "There is no batch " + id.substr(0, 64) + "; it may have been deleted.");
+}
+
 Response store_failed(const StoreFault& fault) {
     if (fault.kind == StoreFault::Kind::full)
         return problem_response(507,
@@ -51,6 +55,11 @@ std::optional<std::string> visible_owner(const http::Request& request) {
 bool may_see(const http::Request& request, const JobSummary& job) {
     const std::optional<std::string> owner = visible_owner(request);
     return !owner || *owner == job.owner;
+}
+
+bool may_see(const http::Request& request, const BatchSummary& batch) {
+    const std::optional<std::string> owner = visible_owner(request);
+    return !owner || *owner == batch.owner;
 }
 
 std::optional<Response> refuse_stranger(JobService& jobs, const http::Call& call) {

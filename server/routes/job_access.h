@@ -1,4 +1,4 @@
-// Common parts of all calls about one job: ownership, and answers to failures of the store.
+// Common parts of all calls about one job or batch: ownership, and answers to failures of the store.
 #pragma once
 
 #include <functional>
@@ -12,6 +12,7 @@
 namespace tunewright::server {
 
 http::Response no_such_job(const std::string& id);
+http::Response no_such_batch(const std::string& id);
 
 /// 507 if the disk is full, otherwise 503.
 http::Response store_failed(const StoreFault& fault);
@@ -35,8 +36,9 @@ http::Response in_turn(ComputeSlots& readers, const http::Request& request,
 /// administrator.
 std::optional<std::string> visible_owner(const http::Request& request);
 
-/// True if the caller may see the job.
+/// True if the caller may see the job, or the batch.
 bool may_see(const http::Request& request, const JobSummary& job);
+bool may_see(const http::Request& request, const BatchSummary& batch);
 
 /// The refusal of a call about /v1/jobs/{id} if this caller has no such job. Owners never change.
 std::optional<http::Response> refuse_stranger(JobService& jobs, const http::Call& call);

@@ -40,8 +40,8 @@ void add_trace_routes(http::Router& router, JobService& jobs, ComputeSlots& read
 /// /v1/jobs/{id}/controllers/{index}/code
 void add_code_routes(http::Router& router, JobService& jobs, ComputeSlots& readers);
 
-/// /v1/jobs/{id}/report.html and /v1/jobs/{id}/change-sheet.html
-void add_report_routes(http::Router& router, JobService& jobs, ComputeSlots& readers);
+/// /v1/jobs/{id}/report.html, and change-sheet.html of a job and of a batch
+void add_report_routes(http::Router& router, JobService& jobs, Batches& batches, ComputeSlots& readers);
 
 /// /v1/queue and below, for administrators.
 void add_queue_routes(http::Router& router, JobService& jobs);

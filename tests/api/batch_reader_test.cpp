@@ -271,7 +271,9 @@ TEST(BatchReader, TodaysSettingsMayBeAProductsOwn) {
     ASSERT_FALSE(out.problem) << out.problem->detail;
     EXPECT_EQ(request_of(out.entries[0])["baseline"],
               Json::parse(R"({"settings": {"GAIN": 1.2, "RESET": 90, "STRUCTURE": "PI action on error, D action on PV"},
-                              "y_span": [0, 200], "u_span": [0, 100], "product": "emerson_deltav_standard"})"));
+                              "product": "emerson_deltav_standard"})"));
+    EXPECT_EQ(request_of(out.entries[0])["implement"],
+              Json::parse(R"({"product": "emerson_deltav_standard", "y_span": [0, 200], "u_span": [0, 100]})"));
     // A name that ends like a unit is the product's own; one without "today" in front is not a column.
     const Outcome named =
         read(loops(), "K,T,L,product,today fKp,today tTn_ms\n2,100,30,beckhoff_fb_ctrl_pid,1.2,90000\n");
@@ -279,6 +281,29 @@ TEST(BatchReader, TodaysSettingsMayBeAProductsOwn) {
     EXPECT_EQ(request_of(named.entries[0])["baseline"]["settings"], Json::parse(R"({"fKp": 1.2, "tTn_ms": 90000})"));
     EXPECT_THAT(refusal(loops(), "K,T,L,product,fKp\n2,100,30,beckhoff_fb_ctrl_pid,1.2\n"),
                 HasSubstr("\"fKp\" is not a column of loops"));
+}
+
+// The new settings are for the loop's own product, and for that of the call where the line names none.
+TEST(BatchReader, EachLoopMayHaveItsOwnController) {
+    const Outcome out = read(loops({{"implement/product", "klipper"}, {"implement/u_span", "[0, 1]"}}),
+                             "K,T [min],L,product,sample time [min],y low,y high,u low,u high\n"
+                             "2,100,30,siemens_fb41_cont_c,0.01,0,200,0,100\n2,100,30,,,,,,\n2,100,30,,0.5,,,,\n");
+    ASSERT_FALSE(out.problem) << out.problem->detail;
+    ASSERT_EQ(out.entries.size(), 3U);
+    EXPECT_EQ(request_of(out.entries[0])["implement"],
+              Json::parse(R"({"product": "siemens_fb41_cont_c", "sample_time": 0.01, "y_span": [0, 200],
+                              "u_span": [0, 100]})"));
+    EXPECT_EQ(request_of(out.entries[1])["implement"], Json::parse(R"({"product": "klipper", "u_span": [0, 1]})"));
+    EXPECT_EQ(request_of(out.entries[2])["implement"]["sample_time"], 0.5);
+    for (const BatchEntry& entry : out.entries) EXPECT_FALSE(request_of(entry).contains("baseline"));
+    // Today's settings by their form stay so where all loops have one product.
+    const Outcome by_form = read(loops({{"implement/product", "klipper"}, {"implement/u_span", "[0, 1]"}}),
+                                 "K,T,L,Kp,Ti\n2,100,30,0.5,90\n");
+    EXPECT_EQ(request_of(by_form.entries[0])["baseline"], Json::parse(R"({"form": "ideal", "Kp": 0.5, "Ti": 90})"));
+    EXPECT_THAT(refusal(loops(), "K,T,L,y low,y high\n1,2,3,0,200\n"), HasSubstr("Add a column product"));
+    EXPECT_THAT(refusal(loops(), "K,T [min],L,sample time [s]\n1,2,3,1\n"), HasSubstr("sample time in \"s\""));
+    const Outcome wrong = read(loops(), "K,T,L,sample time\n2,100,30,often\n");
+    EXPECT_THAT(problem_of(wrong.entries[0]).detail, HasSubstr("sample time is \"often\"; it must be a number"));
 }
 
 TEST(BatchReader, AHeadingMayHoldHalfAUnit) {

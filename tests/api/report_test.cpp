@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "api/report/change_sheet.h"
 #include "api/report/html.h"
 #include "api/report/plot.h"
 #include "api/report/report.h"
@@ -110,6 +111,38 @@ TEST(Report, WhatChangesNothingHasNoChangeSheet) {
     EXPECT_EQ(status(sheet_of(R"({"method": "simc", "error": {"detail": "none"}})")), 404);
     EXPECT_EQ(status(change_sheet_html({R"({"range": {}})"}, "", {})), 404);
     EXPECT_EQ(status(change_sheet_html({"{"}, "", {})), 400);
+}
+
+TEST(Report, DatesAreInTheReadersTime) {
+    EXPECT_EQ(date_words("2024-05-01T12:00:59Z", {}), "2024-05-01 12:00 UTC");
+    EXPECT_EQ(date_words("2024-05-01T12:00:59Z", 120), "2024-05-01 14:00 UTC+02:00");
+    EXPECT_EQ(date_words("2024-02-29T23:40:00Z", 330), "2024-03-01 05:10 UTC+05:30");
+    EXPECT_EQ(date_words("2024-01-01T03:20:00Z", -570), "2023-12-31 17:50 UTC-09:30");
+    EXPECT_EQ(date_words("2023-12-31T23:59:00Z", 1), "2024-01-01 00:00 UTC+00:01");
+    for (const char* other : {"", "yesterday", "2024-13-01T12:00:00Z", "2024-05-01Txx:00:00Z", "T"})
+        EXPECT_EQ(date_words(other, 60), other);
+}
+
+TEST(Report, SheetsOfABatchKeepItsOrderAndListTheLoopsWithoutOne) {
+    const std::string result = R"({"controllers": [)" + std::string(kNewEntry) + "," + kTodaysEntry + "]}";
+    const std::string todays = R"({"controllers": [)" + std::string(kTodaysEntry) + "]}";
+    ChangeSheets sheets;
+    sheets.add({0, "succeeded", {result}, "", {.name = "A"}});
+    sheets.add({1, "failed", {""}, R"({"detail": "T is missing."})", {.name = "B <b>"}});
+    sheets.add({2, "succeeded", {result}, "", {}});
+    sheets.add({3, "cancelled", {""}, "", {}});
+    sheets.add({4, "running", {""}, "", {}});
+    sheets.add({5, "succeeded", {todays}, "", {}});
+    sheets.add({6, "succeeded", {R"({"range": {}})"}, "", {}});
+    EXPECT_EQ(sheets.loops(), 7U);
+    const std::string page = sheets.page("unit 7", "change-sheet.html?from=7");
+    EXPECT_EQ(count(page, "<div class=\"sheet\">"), 3);
+    EXPECT_LT(page.find("A: change sheet"), page.find("Loop 3: change sheet"));
+    for (const char* reason : {"B &lt;b&gt;</td><td>T is missing.", "Cancelled.", "Not tuned yet.",
+                               "today&#39;s settings, which change nothing", "An operating range has no change sheet"})
+        EXPECT_THAT(page, HasSubstr(reason));
+    EXPECT_THAT(page, HasSubstr("href=\"change-sheet.html?from=7\""));
+    EXPECT_THAT(sheets.page("unit 7", ""), Not(HasSubstr("next part")));
 }
 
 TEST(Report, ThePolicyNamesTheStylesheet) {

@@ -127,6 +127,27 @@ TEST(ResultRows, AsCsvHoldUnitsAndWhatIsToBeTyped) {
     EXPECT_EQ(std::stod(under("today_load_IAE", lines[0])), load(1));
     EXPECT_NEAR(std::stod(under("gain_over_today_percent", lines[0])), 100 * (1 - load(0) / load(1)), 1e-9);
     EXPECT_EQ(under("gain_over_today_percent", lines[1]), "") << "today's own line";
+    const Json& before = value["controllers"][1]["as_entered"]["as_typed"];
+    EXPECT_THAT(under("today_settings", lines[0]), HasSubstr("GAIN " + before["GAIN"].get<std::string>() + " %/%; RESET"));
+    const auto Ms = [&](int entry) -> double { return value["controllers"][entry]["implemented"]["robustness"]["Ms"]; };
+    EXPECT_EQ(std::stod(under("worst_Ms", lines[0])), Ms(0));
+    EXPECT_EQ(std::stod(under("today_Ms", lines[0])), Ms(1));
+}
+
+TEST(ResultRows, AsCsvHoldTheRiskOverAllPlants) {
+    const std::string result = result_of(
+        R"("plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3, "uncertainty": {"K": [0.7, 1.4]}},
+           "tune": [{"method": "simc"}], "evaluate": {"points": 0}, "baseline": {"form": "ideal", "Kp": 0.5, "Ti": 12})");
+    const Json value = Json::parse(result);
+    std::string out;
+    append_csv({0, "id", "", "succeeded", result, ""}, out);
+    const std::string line = split_lines(out).front();
+    const Json& entry = value["controllers"][0];
+    const double worst = entry["region"]["worst_Ms"];
+    EXPECT_GT(worst, entry["robustness"]["Ms"].get<double>());
+    EXPECT_EQ(std::stod(under("worst_Ms", line)), worst);
+    EXPECT_EQ(std::stod(under("today_Ms", line)), value["controllers"][1]["region"]["worst_Ms"].get<double>());
+    EXPECT_EQ(under("today_settings", line), "Kp 0.5; Ti 12 s; Td 0 s");
 }
 
 // The implemented loop differs strongly from the ideal one here: a slow program on a fast plant.
@@ -150,6 +171,7 @@ TEST(ResultRows, TheGainOverTodayIsThatOfTheVerdict) {
     EXPECT_NEAR(std::stod(under("gain_over_today_percent", line)), 100 * (1 - figures["ratio"].get<double>()), 1e-9);
     EXPECT_EQ(outline["load_IAE"], figures["load_IAE"]);
     EXPECT_EQ(outline["today"]["load_IAE"], figures["load_IAE_today"]);
+    EXPECT_EQ(outline["today"]["controller"]["Kp"], 0.5);
     EXPECT_GT(figures["load_IAE"].get<double>(), 1.001 * entry["performance"]["load"]["IAE"].get<double>());
 }
 

@@ -92,6 +92,63 @@ class ReportTest(unittest.TestCase):
         link = next(element for element in tree.iter(XHTML + "a") if element.get("download"))
         return json.loads(base64.b64decode(link.get("href").split(",", 1)[1]))
 
+    def sheets(self, batch, query="", status=200):
+        answer = self.service.get("/v1/batches/%s/change-sheet.html%s" % (batch, query), {"Accept": "text/html"})
+        self.assertEqual(answer.status, status, answer.body[:300])
+        return answer.body.decode()
+
+    def batch(self, jobs, name="unit 7"):
+        answer = self.service.post("/v1/batches", {"name": name, "jobs": jobs})
+        self.assertEqual(answer.status, 202, answer.body)
+        self.service.get("/v1/batches/%s/results?follow=true" % answer.json["id"])
+        return answer.json["id"]
+
+    def headings(self, text):
+        tree = xml.etree.ElementTree.fromstring(text)
+        return ["".join(element.itertext()) for element in tree.iter(XHTML + "h1")]
+
+    def test_a_batch_has_a_sheet_for_each_loop_and_a_list_of_the_others(self):
+        nameless = {key: value for key, value in BASE.items() if key != "name"}
+        batch = self.batch([BASE, {"name": "LIC-3", "plant": {"type": "fopdt", "K": 2}}, nameless,
+                            {**BASE, "name": "TIC-103" + ATTACK}])
+        text = self.sheets(batch)
+        self.assertEqual(self.headings(text)[:2], ["TIC-101: change sheet", "Loop 3: change sheet"])
+        self.assertEqual(self.headings(text)[3:], ["unit 7: loops without a change sheet"])
+        self.assertIn("Loop 2", text)
+        self.assertIn("LIC-3", text)
+        self.assertIn("T is missing", text)
+        self.assertNotIn("<script", text)
+        # A sheet is that of the job.
+        job = self.service.get("/v1/jobs?batch=%s" % batch).json["jobs"]
+        alone = self.service.get("/v1/jobs/%s/change-sheet.html" % next(one["id"] for one in job if one["index"] == 0))
+        body = re.search(r"<main class=.sheet.>(.*)</main>", alone.body.decode(), re.S).group(1)
+        self.assertIn(body, text)
+        # A part begins where it is asked to.
+        self.assertEqual(self.headings(self.sheets(batch, "?from=2"))[0], "Loop 3: change sheet")
+        self.assertIn("4 loops", self.sheets(batch, "?from=4", 404))
+        self.assertIn("whole number", self.sheets(batch, "?from=x", 422))
+        self.sheets("nobody", "", 404)
+
+    def test_a_large_batch_comes_in_parts(self):
+        batch = self.batch([{"name": "L%d" % i, "plant": FOPDT, "tune": [{"method": "simc"}]} for i in range(230)], "many")
+        seen, query = [], ""
+        for part in range(3):
+            text = self.sheets(batch, query)
+            seen += self.headings(text)
+            link = re.search(r'href="change-sheet.html(\?from=\d+)"', text)
+            self.assertEqual(link is None, part == 2)
+            query = link.group(1) if link else ""
+        self.assertEqual(seen, ["L%d: change sheet" % i for i in range(230)])
+
+    def test_dates_are_in_the_time_of_the_reader(self):
+        job = self.job(BASE)
+        for page in ("report.html", "change-sheet.html"):
+            for query, zone in (("", " UTC"), ("?utc_offset=120", " UTC+02:00"), ("?utc_offset=-570", " UTC-09:30")):
+                self.assertIn(zone + " ", self.report(job, query, page).body.decode())
+            refused = self.service.get("/v1/jobs/%s/%s?utc_offset=900" % (job["id"], page))
+            self.assertEqual(refused.status, 422)
+            self.assertIn("840", refused.body.decode())
+
     def test_figures_are_the_jobs_and_the_request_runs_again(self):
         job = self.job(BASE)
         tree, text, figures = self.checked(job)
@@ -102,7 +159,7 @@ class ReportTest(unittest.TestCase):
             self.assertTrue(any(at.endswith(place) and not at.startswith("/result/controllers/%d/" % first)
                                 for at in figures), "today's " + place)
         for told in ("TIC-101", job["id"], job["result"]["request_hash"], job["result"]["version"], "Prepared by",
-                     "Garpinger", "Series", "Parallel", "degC"):
+                     "Garpinger", "Series", "Parallel", "°C"):
             self.assertIn(told, text)
         self.assertEqual(len(list(tree.iter(XHTML + "figure"))), 6)
         for request in (self.request_of(tree), json.loads("".join(tree.find(".//*[@id='request']").itertext()))):

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "api/code/code.h"
+#include "api/report/change_sheet.h"
 #include "api/report/report.h"
 #include "tests/api/support.h"
 

@@ -146,10 +146,50 @@ test("a change sheet of ten parameters and a long name is one page of A4 and of 
     }
 });
 
+test("a batch's page leads to its change sheets: one page a loop, and one with those that have none", async () => {
+  const loops = [1, 2, 3].map((K) => ({ ...REQUEST, name: `TIC-${K}`, plant: { ...REQUEST.plant, K } }));
+  const jobs = [...loops, { name: "TIC-4", plant: { type: "fopdt", K: 2 } }];
+  const { id } = await tests.post("v1/batches", { name: "unit 7", jobs });
+  await tests.withPage(`#/batches/${id}`, {}, async (page) => {
+    await page.getByText("3 tuned, 1 failed").waitFor();
+    const opened = page.waitForEvent("popup");
+    await page.getByRole("link", { name: "Change sheets", exact: true }).click();
+    const sheets = await opened;
+    await sheets.getByRole("heading", { name: "unit 7: loops without a change sheet" }).waitFor();
+    assert.deepEqual(await sheets.locator("h1").allInnerTexts(), [
+      ...loops.map(({ name }) => `${name}: change sheet`),
+      "unit 7: loops without a change sheet",
+    ]);
+    for (const format of ["A4", "Letter"]) assert.equal(textPieces(await sheets.pdf({ format })).length, 4, format);
+    assert.equal(await overflow(sheets), 0);
+  });
+});
+
+test("reports and change sheets of an ordinary job are short, and in the reader's time", async () => {
+  const implement = { product: "emerson_deltav_standard", y_span: [0, 200], u_span: [0, 100], sample_time: 0.5 };
+  const baseline = { product: "emerson_deltav_standard", settings: { GAIN: 1.1, RESET: 14 } };
+  const job = await tuned({ ...REQUEST, tune: [{ method: "robust" }], implement, baseline });
+  for (const [timezone, zone] of [["Europe/Berlin", /UTC\+0[12]:00/], ["Asia/Kolkata", /UTC\+05:30/], ["UTC", /UTC\+00:00/]]) {
+    const context = await tests.browser.newContext({ timezoneId: timezone });
+    const page = await context.newPage();
+    await page.goto(`${tests.service.base}/#/jobs/${job.id}/design`);
+    const link = page.getByRole("link", { name: "Report", exact: true });
+    await link.waitFor();
+    const address = await link.getAttribute("href");
+    const there = new Date(job.finished_at).toLocaleTimeString("en-GB", { timeZone: timezone, hour: "2-digit", minute: "2-digit" });
+    await page.goto(new URL(address, tests.service.base).href);
+    assert.match(await page.locator("header").innerText(), zone);
+    assert.ok((await page.locator("header").innerText()).includes(` ${there} UTC`), `${there} in ${timezone}`);
+    if (timezone === "UTC")
+      for (const format of ["A4", "Letter"]) assert.ok(textPieces(await page.pdf({ format })).length <= 4, format);
+    await context.close();
+  }
+});
+
 test("Design leads to the change sheet of a design, and to none of today's settings", async () => {
   const job = await tuned(REQUEST);
   for (const [entry, address] of [
-    [1, `v1/jobs/${job.id}/change-sheet.html?controller=1`],
+    [1, `v1/jobs/${job.id}/change-sheet.html?controller=1&utc_offset=0`],
     [2, null],
   ])
     await tests.withPage(`#/jobs/${job.id}/design?entry=${entry}`, {}, async (page) => {
@@ -176,7 +216,7 @@ test("a screen with a result leads to the report of the entry that it shows", as
     await page.getByRole("link", { name: "Report", exact: true }).click();
     const report = await opened;
     await report.getByRole("heading", { name: "TIC-101 <b>&: tuning report" }).waitFor();
-    assert.match(report.url(), /report\.html\?controller=1$/);
+    assert.match(report.url(), /report\.html\?controller=1&utc_offset=0$/);
   });
 });
 
@@ -190,7 +230,7 @@ test("the link itself has the entry, chosen or not: a middle click or a copy lea
     await tests.withPage(`#/jobs/${job.id}/${address}`, {}, async (page) => {
       const link = page.getByRole("link", { name: "Report", exact: true });
       await link.waitFor();
-      assert.equal(await link.getAttribute("href"), `v1/jobs/${job.id}/report.html?controller=${index}`);
+      assert.equal(await link.getAttribute("href"), `v1/jobs/${job.id}/report.html?controller=${index}&utc_offset=0`);
     });
 });
 

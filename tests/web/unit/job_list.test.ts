@@ -91,6 +91,31 @@ test("for a product the columns are what is to be typed into it", () => {
   assert.equal(gainColumn.text(loops[1]!), "–");
 });
 
+test("today's settings stand before the new ones, each with its unit; loops with and without a product share the table", () => {
+  const units = { time: "min", u: "%", y: "degC" };
+  const typed = (GAIN: string) => ({ GAIN: `${GAIN} %/%` });
+  const loops = [
+    job("a", { method: "simc", controller: pid(2, 10), units, today: { controller: pid(1, 12), Ms: 1.2, load_IAE: 9 } }),
+    job("b", { method: "simc", controller: pid(3, 11), units, to_type: typed("4"), today: { controller: pid(1, 12), to_type: typed("2") } }),
+  ];
+  const columns = batchColumns(loops);
+  const labels = columns.map(({ label }) => label);
+  for (const pair of [["GAIN today", "GAIN"], ["Kp today (%/°C)", "Kp (%/°C)"], ["Ti today (min)", "Ti (min)"]])
+    assert.deepEqual(labels.slice(labels.indexOf(pair[0]!), labels.indexOf(pair[0]!) + 2), pair);
+  const cells = (label: string): string[] => loops.map(columns.find((column) => column.label === label)!.text);
+  assert.deepEqual(cells("GAIN today"), ["–", "2 %/%"]);
+  assert.deepEqual(cells("Kp today (%/°C)"), ["1", "–"]);
+  for (const column of columns) assert.ok(loops.some((loop) => column.text(loop) !== "–"), column.label);
+});
+
+test("loops of several products have their settings as one text each", () => {
+  const settings = (prefix: string) => Object.fromEntries([...Array(6).keys()].map((at) => [`${prefix}${at}`, String(at)]));
+  const loops = ["A", "B"].map((name) => job(name, { method: "simc", controller: pid(2, 10), to_type: settings(name) }));
+  const columns = batchColumns(loops);
+  assert.deepEqual(columns.map(({ label }) => label).filter((label) => label.startsWith("Settings")), ["Settings"]);
+  assert.equal(columns.find(({ label }) => label === "Settings")!.text(loops[1]!), "B0 0; B1 1; B2 2; B3 3; B4 4; B5 5");
+});
+
 test("a call that a shell takes apart as it was put together", () => {
   assert.equal(
     curlOf("http://h/v1/jobs", { name: "Jim's" }),

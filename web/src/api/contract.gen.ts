@@ -77,6 +77,10 @@ export type components = {
       load_IAE?: number | null;
       excess_percent?: number | null;
       today?: {
+        controller?: components["schemas"]["Controller"];
+        to_type?: {
+          [key: string]: string;
+        };
         Ms?: number | null;
         load_IAE?: number | null;
       };

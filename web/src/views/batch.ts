@@ -8,6 +8,7 @@ import { batchColumns, sorted } from "../words/job_list.ts";
 import type { BatchColumn } from "../words/job_list.ts";
 import { orderOf, sortText } from "../words/comparison.ts";
 import { jobTable, reader, troubleLine } from "./job_actions.ts";
+import { reportLink } from "./report_link.ts";
 import type { View } from "./start.ts";
 
 export interface BatchEvents {
@@ -36,6 +37,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
   const cancel = h("button", { type: "button", onclick: () => void work(() => cancelBatch(id)) }, "Cancel the rest");
   const again = h("button", { type: "button", onclick: () => void work(tryAgain) }, "Retry the failed jobs");
   const csv = h("button", { type: "button", onclick: () => void work(saveCsv) }, "Download CSV");
+  const sheets = reportLink("Change sheets", "change-sheet.html", "batches");
   const note = h("p", { class: "hint", hidden: true });
   let columns: BatchColumn[] = [];
   let heads: { column: BatchColumn; element: HTMLElement }[] = [];
@@ -60,6 +62,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
         "p",
         { class: "actions" },
         csv,
+        sheets.element,
         cancel,
         again,
         h("a", { href: formatRoute({ screen: "jobs", text: "" }) }, "All jobs"),
@@ -184,6 +187,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
     bar.hidden = hasEnded(now);
     cancel.hidden = hasEnded(now);
     again.hidden = !hasEnded(now) || failed + cancelled === 0;
+    sheets.show(succeeded > 0 ? now.id : null, now.created_at);
   }
 
   async function read(): Promise<boolean> {

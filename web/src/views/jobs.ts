@@ -125,7 +125,7 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
     ];
     if (job.status === "succeeded") {
       const report = reportLink();
-      report.show(job.id);
+      report.show(job.id, job.finished_at);
       report.element.setAttribute("aria-label", `Report of ${name}`);
       list.push(report.element);
     }

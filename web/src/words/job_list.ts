@@ -132,7 +132,7 @@ const LAST_COLUMNS: BatchColumn[] = [
   { id: "status", label: "Status", text: (job) => job.status, value: (job) => job.status },
 ];
 
-/** Settings of the controller to enter; times and gains are in the units of the loops, if these are common. */
+/** Settings of a controller; times and gains are in the units of the loops, if these are common. */
 const SETTINGS: { id: string; unit(units: UnitNames): string; read(controller: Controller): number | null | undefined }[] = [
   { id: "Kp", unit: (units) => quotient(units.u, units.y), read: ({ Kp }) => Kp },
   { id: "Ki", unit: () => "", read: ({ Ki }) => Ki },
@@ -144,40 +144,59 @@ const SETTINGS: { id: string; unit(units: UnitNames): string; read(controller: C
   { id: "Set-point filter", unit: (units) => units.time, read: ({ setpoint_filter }) => setpoint_filter?.T },
 ];
 
+/** The settings of a loop that are shown next to each other: today's, then the new ones. */
+const SIDES: { mark: string; of(job: ListedJob): Pick<Outline, "controller" | "to_type"> | undefined }[] = [
+  { mark: " today", of: (job) => job.outline?.today },
+  { mark: "", of: (job) => job.outline },
+];
+
 function settingColumns(jobs: readonly ListedJob[]): BatchColumn[] {
   const tuned = jobs.filter((job) => job.outline?.controller);
   const all = tuned.map((job) => unitNames(job.outline?.units));
   const shared = all.every((units) => JSON.stringify(units) === JSON.stringify(all[0])) ? all[0] : undefined;
-  return SETTINGS.map(({ id, unit, read }) => {
-    const value = (job: ListedJob): number | null => {
-      const controller = job.outline?.controller;
-      return (controller && read(controller)) ?? null;
-    };
-    return {
-      id,
-      label: shared ? withUnit(id, unit(shared)) : id,
-      text: (job) => {
-        const own = value(job) === null || shared ? "" : unit(unitNames(job.outline?.units));
-        return `${formatSetting(value(job))}${own ? ` ${own}` : ""}`;
-      },
-      value,
-    };
-  });
+  return SETTINGS.flatMap(({ id, unit, read }) =>
+    SIDES.map(({ mark, of }) => {
+      const value = (job: ListedJob): number | null => {
+        const { controller, to_type: typed } = of(job) ?? {};
+        return controller && !typed ? (read(controller) ?? null) : null;
+      };
+      return {
+        id: `${id}${mark}`,
+        label: shared ? withUnit(`${id}${mark}`, unit(shared)) : `${id}${mark}`,
+        text: (job: ListedJob) => {
+          const own = value(job) === null || shared ? "" : unit(unitNames(job.outline?.units));
+          return `${formatSetting(value(job))}${own ? ` ${own}` : ""}`;
+        },
+        value,
+      };
+    }),
+  );
 }
 
-/** Columns of the settings to type into the product, one for each. */
+/** More settings than this, of several products, are one text a loop. */
+const MAX_SETTINGS = 10;
+
+/** Columns of the settings to type into the product, two for each. */
 function typedColumns(jobs: readonly ListedJob[]): BatchColumn[] {
   const names = [...new Set(jobs.flatMap((job) => Object.keys(job.outline?.to_type ?? {})))];
-  return names.map((name) => ({
-    id: `type.${name}`,
-    label: name,
-    text: (job) => job.outline?.to_type?.[name] ?? DASH,
-    value: (job) => {
-      const text = job.outline?.to_type?.[name];
-      const number = Number.parseFloat(text ?? "");
-      return text === undefined ? null : Number.isNaN(number) ? text : number;
-    },
-  }));
+  if (names.length > MAX_SETTINGS)
+    return SIDES.map(({ mark, of }) => {
+      const text = (job: ListedJob): string =>
+        Object.entries(of(job)?.to_type ?? {}).map(([name, typed]) => `${name} ${typed}`).join("; ") || DASH;
+      return { id: `type${mark}`, label: `Settings${mark}`, text, value: text };
+    });
+  return names.flatMap((name) =>
+    SIDES.map(({ mark, of }) => ({
+      id: `type.${name}${mark}`,
+      label: `${name}${mark}`,
+      text: (job: ListedJob) => of(job)?.to_type?.[name] ?? DASH,
+      value: (job: ListedJob) => {
+        const text = of(job)?.to_type?.[name];
+        const number = Number.parseFloat(text ?? "");
+        return text === undefined ? null : Number.isNaN(number) ? text : number;
+      },
+    })),
+  );
 }
 
 const ALWAYS = ["index", "name", "status"];
@@ -185,9 +204,7 @@ const ALWAYS = ["index", "name", "status"];
 /** The columns for these loops: description, settings to enter, results; without columns that would hold only
     dashes. */
 export function batchColumns(jobs: readonly ListedJob[]): BatchColumn[] {
-  const typed = typedColumns(jobs);
-  const settings = typed.length > 0 ? typed : settingColumns(jobs);
-  return [...FIRST_COLUMNS, ...settings, ...LAST_COLUMNS].filter(
+  return [...FIRST_COLUMNS, ...typedColumns(jobs), ...settingColumns(jobs), ...LAST_COLUMNS].filter(
     (column) => ALWAYS.includes(column.id) || jobs.length === 0 || jobs.some((job) => column.text(job) !== DASH),
   );
 }

@@ -50,8 +50,9 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
     const entries = about?.result?.controllers ?? [];
     const shown = chosen === null ? entries : entries.filter((_, index) => index === chosen);
     const hasChange = shown.some((entry) => entry.controller && entry.method !== "baseline");
-    report.show(id, chosen);
-    sheet.show(hasChange ? id : null, chosen);
+    const date = about?.finished_at ?? null;
+    report.show(id, date, chosen);
+    sheet.show(hasChange ? id : null, date, chosen);
   }
 
   return {

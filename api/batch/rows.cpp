@@ -46,7 +46,8 @@ void add_text(const Json& value, const char* pointer, CsvWriter& out) {
 
 /// Columns that were added later stand at the end, so that the earlier ones keep their positions.
 constexpr std::array kLater = {"time_unit",        "filter",         "setpoint_filter_T",
-                               "settings_to_type", "today_load_IAE", "gain_over_today_percent"};
+                               "settings_to_type", "today_load_IAE", "gain_over_today_percent",
+                               "u_unit",           "y_unit"};
 
 /// The settings for the user's own controller as text: "GAIN 2.328 %/%; RESET 93.12 s".
 std::string to_type(const Json& entry) {
@@ -96,6 +97,8 @@ void add_later(const Json& result, const Json& entry, CsvWriter& out) {
     const bool compared = known && load != nullptr && load->is_number() && today->get<double>() > 0 &&
                           entry.value("method", "") != "baseline";
     compared ? out.number(100 * (1 - load->get<double>() / today->get<double>())) : out.empty();
+    add_text(result, "/units/u", out);
+    add_text(result, "/units/y", out);
 }
 
 /// `entry` of a result; an empty object if there is none.

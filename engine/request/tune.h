@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/evaluation/own_step.h"
 #include "engine/identification/identify.h"
 #include "engine/plant/analysed_plant.h"
 #include "engine/plant/nonlinear/linearisation.h"
@@ -45,6 +46,7 @@ struct TuningRequest {
     std::optional<Controller> baseline;
     EvaluateOptions evaluate;
     verdict::GivenSteps given_steps;  ///< the steps of `evaluate` that the user set
+    std::optional<OwnStep> own_step;  ///< simulated with every controller
     struct TypedSettings {
         device::DeviceModel device;
         product::Settings settings;

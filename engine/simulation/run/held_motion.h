@@ -23,7 +23,9 @@ struct HeldStep {
 class HeldMotion {
 public:
     /// `direction` is 1 or -1. With the integral of y as a last state, where that is asked for.
-    HeldMotion(const LinearPlant& plant, double direction, bool with_integral);
+    HeldMotion(const LinearPlant& plant, double direction, bool with_integral)
+        : HeldMotion(plant.realisation(), direction, with_integral) {}
+    HeldMotion(const Realisation& plant, double direction, bool with_integral);
 
     int states() const { return n_; }
     double direct_term() const { return D_; }

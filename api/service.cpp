@@ -286,9 +286,9 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<EvaluateRequest>(decoded);
 
-    const auto result =
-        evaluate_all(*request.subject, given(request.controllers), request.evaluate, request.device,
-                     labels_of(request.units), control, request.model ? &*request.model : nullptr, request.given_steps);
+    const auto result = evaluate_all(*request.subject, given(request.controllers), request.evaluate, request.device,
+                                     labels_of(request.units), control, request.model ? &*request.model : nullptr,
+                                     request.given_steps, request.evaluate.own_step);
     if (!result) return refusal(to_problem(result.error()));
     Writer out;
     evaluate_answer_contract().write(*result, out);

@@ -49,7 +49,8 @@ void add_text(const Json& value, const char* pointer, CsvWriter& out) {
 /// Columns that were added later stand at the end, so that the earlier ones keep their positions.
 constexpr std::array kLater = {"time_unit",        "filter",         "setpoint_filter_T",
                                "settings_to_type", "today_load_IAE", "gain_over_today_percent",
-                               "worst_Ms",         "today_settings", "today_Ms"};
+                               "worst_Ms",         "today_settings", "today_Ms",
+                               "u_unit",           "y_unit"};
 
 /// The settings for the user's own controller as text, "GAIN 2.328 %/%; RESET 93.12 s"; "" without a product.
 std::string to_type(const Json& entry) {
@@ -136,6 +137,8 @@ void add_later(const Json& result, const Json& entry, CsvWriter& out) {
     const std::string before = todays == nullptr ? "" : settings_text(result, *todays);
     before.empty() ? out.empty() : out.text(before);
     add_number(todays == nullptr ? nullptr : worst_Ms_of(*todays), out);
+    add_text(result, "/units/u", out);
+    add_text(result, "/units/y", out);
 }
 
 /// `entry` of a result; an empty object if there is none.

@@ -4,6 +4,7 @@
 
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
+#include "api/contract/own_step.h"
 #include "api/contract/plant/typed.h"
 #include "api/contract/product/product.h"
 #include "api/contract/range/range_request.h"
@@ -346,6 +347,7 @@ TuningRequest to_engine(JobRequest request) {
     if (request.baseline) out.baseline = request.baseline->given;
     out.device = request.device;
     out.evaluate = request.evaluate;
+    out.own_step = request.evaluate.own_step;
     out.given_steps = request.given_steps;
     out.labels = labels_of(request.units);
     out.identified_region = request.uncertainty == "identified" ? IdentifiedRegion::held
@@ -426,27 +428,37 @@ const Description<NoiseOptions>& noise_contract() {
     return description;
 }
 
+/// A member of the engine's options.
+template <class T>
+T EvaluateQuestion::*own(T EvaluateOptions::*member) {
+    return member;
+}
+
 }  // namespace
 
-const Description<EvaluateOptions>& evaluate_options_contract() {
+const Description<EvaluateQuestion>& evaluate_options_contract() {
     static const auto description = [] {
-        Description<EvaluateOptions> d("Evaluate", "Options of the simulation and extent of the answer.");
-        d.field("setpoint_step", &EvaluateOptions::setpoint_step, number({.not_zero = true}),
+        using Q = EvaluateQuestion;
+        Description<Q> d("Evaluate", "Options of the simulation and extent of the answer.");
+        d.field("setpoint_step", own(&EvaluateOptions::setpoint_step), number({.not_zero = true}),
                 "Size of the set-point step.", {.unit = "y"})
-            .field("load_step", &EvaluateOptions::load_step, number({.not_zero = true}),
+            .field("load_step", own(&EvaluateOptions::load_step), number({.not_zero = true}),
                    "Size of the load step at the plant's input.", {.unit = "u"})
             .field(
-                "horizon", &EvaluateOptions::horizon, horizon(),
+                "horizon", own(&EvaluateOptions::horizon), horizon(),
                 "Length of the responses; a number also ends the indices, which with auto are integrals to infinity.",
                 {.unit = "time"})
-            .field("points", &EvaluateOptions::points, points(), "Points of each trace: 0 (no traces) or 2 to 20000.")
-            .field("actuator", &EvaluateOptions::actuator, maybe(object(actuator_contract())), "Limits of u.")
-            .field("noise", &EvaluateOptions::noise, maybe(object(noise_contract())), "Measurement noise.")
-            .field("tradeoff", &EvaluateOptions::tradeoff, boolean(),
+            .field("points", own(&EvaluateOptions::points), points(),
+                   "Points of each trace: 0 (no traces) or 2 to 20000.")
+            .field("actuator", own(&EvaluateOptions::actuator), maybe(object(actuator_contract())), "Limits of u.")
+            .field("noise", own(&EvaluateOptions::noise), maybe(object(noise_contract())), "Measurement noise.")
+            .field("own_step", &Q::own_step, maybe(object(own_step_contract())),
+                   "A step of the user's own loop, simulated with every controller.")
+            .field("tradeoff", own(&EvaluateOptions::tradeoff), boolean(),
                    "Also return each controller's trade-off between set points and loads.")
             .field(
                 "rank_limits",
-                [](const Json& value, EvaluateOptions& options, Reader& reader) {
+                [](const Json& value, Q& options, Reader& reader) {
                     if (!value.is_object())
                         return reader.fault(wrong_kind(value, "an object such as {\"Ms\": 2}", reader));
                     for (const auto& [name, member] : value.items()) {
@@ -458,7 +470,7 @@ const Description<EvaluateOptions>& evaluate_options_contract() {
                         }
                     }
                 },
-                [](const EvaluateOptions& options, Writer& out) {
+                [](const Q& options, Writer& out) {
                     out.begin_object();
                     out.key("Ms").number(options.rank_Ms.value_or(limits::kDefaultMaxRankedMs));
                     out.end_object();
@@ -472,7 +484,7 @@ const Description<EvaluateOptions>& evaluate_options_contract() {
                         {"additionalProperties", false}};
                 },
                 "Entries that exceed these limits rank last.")
-            .field("optimum_at_Ms", &EvaluateOptions::optimum_at_Ms, maybe(boolean()),
+            .field("optimum_at_Ms", own(&EvaluateOptions::optimum_at_Ms), maybe(boolean()),
                    "True: compare each entry with the robust PID of the least load IAE at the same Ms. Default: true "
                    "if a job compares several methods, else false.");
         return d;

@@ -11,6 +11,11 @@
 
 namespace tunewright::api {
 
+/// The member `evaluate` of a request.
+struct EvaluateQuestion : EvaluateOptions {
+    std::optional<OwnStep> own_step;  ///< simulated with every controller
+};
+
 struct JobRequest : JobTerms {
     std::optional<std::string> name;
     std::optional<Units> units;
@@ -25,7 +30,7 @@ struct JobRequest : JobTerms {
     std::optional<SentController> baseline;
     bool baseline_from_record = false;  ///< instead of `baseline`: as the record shows it
     std::optional<GivenDevice> implement;
-    EvaluateOptions evaluate;
+    EvaluateQuestion evaluate;
     verdict::GivenSteps given_steps;  ///< of `evaluate`
     std::string uncertainty = "auto";
     ReadRecord read;                            ///< of `record`
@@ -45,7 +50,7 @@ struct EvaluateRequest {
     std::optional<AnalysedPlant> subject;  ///< the analysed plant
     std::vector<SentController> controllers;
     std::optional<GivenDevice> implement;
-    EvaluateOptions evaluate;
+    EvaluateQuestion evaluate;
     verdict::GivenSteps given_steps;            ///< of `evaluate`
     std::optional<device::DeviceModel> device;  ///< of `implement`
 };
@@ -64,7 +69,7 @@ const Description<DesignRequest>& design_request_contract();
 const Description<EvaluateRequest>& evaluate_request_contract();
 const Description<IdentifyRequest>& identify_request_contract();
 
-const Description<EvaluateOptions>& evaluate_options_contract();
+const Description<EvaluateQuestion>& evaluate_options_contract();
 
 /// The members that name the subject of a request; each request has one of them.
 const std::vector<std::string>& request_sources();

@@ -46,6 +46,12 @@ public:
         return name.empty() ? quantity : quantity + " [" + name + "]";
     }
 
+    /// The same for a quantity in u/y: "|CS| [%/degC]", if both are named.
+    std::string with_quotient(const std::string& quantity) const {
+        const std::string u = units_.value("u", ""), y = units_.value("y", "");
+        return u.empty() || y.empty() ? quantity : quantity + " [" + u + "/" + y + "]";
+    }
+
     std::optional<std::string> text(const std::string& points_heading) const {
         if (blocks_.empty()) return std::nullopt;
         CsvWriter out;
@@ -100,6 +106,10 @@ void add_responses(const Json& entry, const std::string& label, Table& table) {
                       at(entry, place + quantity));
         }
     }
+    for (const std::string quantity : {"r", "y", "u"})
+        table.add(label, at(entry, "/own_step/trace/t"),
+                  "own step " + table.with_unit(quantity, quantity == "u" ? "u" : "y"),
+                  at(entry, "/own_step/trace/" + quantity));
 }
 
 void add_frequency(const Json& entry, const std::string& label, Table& table) {
@@ -107,8 +117,9 @@ void add_frequency(const Json& entry, const std::string& label, Table& table) {
     table.add(label, omega, "L re", at(entry, "/frequency/L/re"));
     table.add(label, omega, "L im", at(entry, "/frequency/L/im"));
     table.add(label, omega, "L phase [deg]", at(entry, "/frequency/L/phase_deg"));
-    for (const std::string name : {"S", "T", "CS"})
+    for (const std::string name : {"S", "T"})
         table.add(label, omega, "|" + name + "|", at(entry, "/frequency/" + name + "_abs"));
+    table.add(label, omega, table.with_quotient("|CS|"), at(entry, "/frequency/CS_abs"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/evaluation/two_digits.h"
 #include "engine/loop/noise.h"
 #include "engine/simulation/linear/indices.h"
 
@@ -108,8 +109,7 @@ double covering_horizon(const StepResponse& setpoint, const StepResponse& load) 
             t, last_outside(response->nodes, response->y_final, 0.01 * largest).value_or(response->nodes.back().t));
     }
     if (t <= 0) t = setpoint.nodes.back().t;
-    const double wanted = 1.25 * t, unit = std::pow(10.0, std::floor(std::log10(wanted)) - 1);
-    return std::ceil(wanted / unit) * unit;
+    return two_digits_up(1.25 * t);
 }
 
 Trace trace_of(const StepResponse& response, double horizon, int points) {

@@ -9,6 +9,7 @@
 #include "engine/evaluation/evaluation.h"
 #include "engine/request/device_entry.h"
 #include "engine/request/optimum_at_ms.h"
+#include "engine/request/own_step/own_step_entry.h"
 #include "engine/request/replay/replay_entry.h"
 #include "engine/request/verdict/finding.h"
 #include "engine/tuning/method/method.h"
@@ -71,6 +72,7 @@ struct TuningEntry {
     std::optional<double> best_PI_load_IAE;  ///< of a robust PID: the load IAE of the robust PI within the same limits
     std::optional<DeviceEntry> on_device;    ///< if requested and possible
     std::optional<ReplayedEntry> replay;     ///< the recorded time with this controller
+    std::optional<OwnStepEntry> own_step;    ///< if requested
     std::optional<Standing> standing;        ///< not for settings without a plant
     /// Not for today's settings: the longest sample time of a program with backward rules that keeps Ms within 5 %.
     std::optional<Figure> longest_sample_time;

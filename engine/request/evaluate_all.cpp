@@ -11,6 +11,7 @@
 #include "engine/evaluation/evaluation_start.h"
 #include "engine/request/identified_region.h"
 #include "engine/request/optimum_at_ms.h"
+#include "engine/request/own_step/own_steps.h"
 #include "engine/request/ranking.h"
 #include "engine/request/verdict/verdict.h"
 #include "engine/tuning/arrieta/tradeoff_report.h"
@@ -45,9 +46,12 @@ Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std:
                                         const EvaluateOptions& options,
                                         const std::optional<device::DeviceModel>& device, const verdict::Labels& labels,
                                         const RunControl& control, const IdentifiedModel* model,
-                                        const verdict::GivenSteps& given_steps) {
+                                        const verdict::GivenSteps& given_steps,
+                                        const std::optional<OwnStep>& own_step) {
     const auto now = [&] { return control.now_ms ? control.now_ms() : 0; };
     if (const auto error = refuse_traces(options, controllers.size())) return *error;
+    if (own_step)
+        if (const auto error = refuse_own_step(*own_step)) return *error;
     EvaluationResult result;
     if (subject.equations() != nullptr) result.operating_point = operating_point(*subject.equations());
     EvaluateOptions watched = options;
@@ -73,8 +77,15 @@ Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std:
         evaluation->compute_ms = now() - start;
         entry.evaluation = std::move(*evaluation);
     }
-    const verdict::Context context{subject, options, labels,      device ? device->Ts : 0,
-                                   model,   nullptr, given_steps, control};
+    const verdict::Context context{subject, options,     labels,  device ? device->Ts : 0,        model,
+                                   nullptr, given_steps, control, own_step ? &*own_step : nullptr};
+    simulate_own_steps(
+        result.controllers, subject, own_step, options.points,
+        [&](const TuningEntry& entry) {
+            const auto& typed = controllers[static_cast<std::size_t>(&entry - result.controllers.data())].typed;
+            return typed ? &typed->device : device ? &*device : nullptr;
+        },
+        control);
     draw_together(result.controllers);
     const RankingTerms terms = ranking_terms(options, subject.linear() != nullptr);
     ranked(result.controllers, terms);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/evaluation/own_step.h"
 #include "engine/expected.h"
 #include "engine/identification/identify.h"
 #include "engine/plant/analysed_plant.h"
@@ -30,10 +31,12 @@ struct EvaluationResult {
 /// Errors: those of evaluate(), `where` = "controllers/<index>/..."; timeout if it was stopped. `labels`: the units in
 /// verdicts. `device`: the user's own controller, on which each is evaluated as well. `model`: the identified model
 /// that `subject` is made of; null for a given plant. `given_steps`: the steps of `options` that the user set.
+/// `own_step`: simulated with every controller.
 Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std::vector<GivenController>& controllers,
                                         const EvaluateOptions& options,
                                         const std::optional<device::DeviceModel>& device, const verdict::Labels& labels,
                                         const RunControl& control, const IdentifiedModel* model = nullptr,
-                                        const verdict::GivenSteps& given_steps = {});
+                                        const verdict::GivenSteps& given_steps = {},
+                                        const std::optional<OwnStep>& own_step = {});
 
 }  // namespace tunewright

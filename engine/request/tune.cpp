@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <mutex>
 #include <numeric>
+#include <span>
 #include <tuple>
 
 #include "engine/evaluation/best_so_far.h"
 #include "engine/evaluation/evaluate.h"
 #include "engine/evaluation/evaluation_start.h"
 #include "engine/request/identified_region.h"
+#include "engine/request/own_step/own_steps.h"
 #include "engine/request/plan.h"
 #include "engine/request/ranking.h"
 #include "engine/request/replay/replay.h"
@@ -44,6 +46,7 @@ private:
     bool wants_optima() const;
     void compare_with_optima(double from);
     void replay_record();
+    const device::DeviceModel* device_of(const TuningEntry& entry) const;
     void keep_best(const TuningEntry& entry);
     RunControl share(double from, double to) const;
     void report(double fraction, const std::string& stage, const std::string& message) const;
@@ -237,6 +240,19 @@ void TuningRun::replay_record() {
     result_.replay = replayer.record();
 }
 
+// Given settings may be those of a product of their own.
+const device::DeviceModel* TuningRun::device_of(const TuningEntry& entry) const {
+    const GivenController* given = entry.is_baseline() ? &*request_.baseline : nullptr;
+    if (entry.method == kGivenMethod) {
+        const auto before = std::span(result_.controllers.data(), &entry);
+        given =
+            &request_
+                 .controllers[static_cast<std::size_t>(std::ranges::count(before, kGivenMethod, &TuningEntry::method))];
+    }
+    if (given != nullptr && given->typed) return &given->typed->device;
+    return request_.device ? &*request_.device : nullptr;
+}
+
 // Optima are needed if several designs are ranked, because they are ranked by their distance from them.
 bool TuningRun::wants_optima() const {
     const bool several = request_.tune.size() > 1 || (!request_.tune.empty() && request_.tune.front().of_all());
@@ -248,6 +264,8 @@ Expected<TuningResult> TuningRun::result() {
     if (!planned) return planned.error();
     const std::size_t entries = planned->size() + request_.controllers.size() + request_.baseline.has_value();
     if (const auto error = refuse_traces(request_.evaluate, entries)) return *error;
+    if (request_.own_step)
+        if (const auto error = refuse_own_step(*request_.own_step)) return *error;
     if (const auto error = find_plant()) return *error;
     state_problem();
     rows_.emplace(request_, *subject_, problem_, result_.model ? &*result_.model : nullptr);
@@ -269,6 +287,9 @@ Expected<TuningResult> TuningRun::result() {
     }
     if (wants_optima() && !result_.partial) compare_with_optima(tuned);
     replay_record();
+    simulate_own_steps(
+        result_.controllers, *subject_, request_.own_step, request_.evaluate.points,
+        [this](const TuningEntry& entry) { return device_of(entry); }, control_);
     draw_together(result_.controllers);
     result_.ranking = ranked(result_.controllers, terms());
     if (result_.model && !result_.ranking.empty())
@@ -282,7 +303,8 @@ Expected<TuningResult> TuningRun::result() {
                                    result_.model ? &*result_.model : nullptr,
                                    problem_ ? &*problem_ : nullptr,
                                    request_.given_steps,
-                                   control_};
+                                   control_,
+                                   request_.own_step ? &*request_.own_step : nullptr};
     verdict::judge(result_.controllers, context);
     result_.verdict = verdict::of_all(result_.controllers, result_.ranking, context, result_.partial);
     result_.proposed = verdict::proposed(result_.controllers, result_.verdict);

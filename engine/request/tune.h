@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/evaluation/own_step.h"
 #include "engine/identification/identify.h"
 #include "engine/plant/analysed_plant.h"
 #include "engine/plant/nonlinear/linearisation.h"
@@ -47,6 +48,7 @@ struct TuningRequest {
     std::optional<GivenController> baseline;              ///< today's settings
     EvaluateOptions evaluate;
     verdict::GivenSteps given_steps;  ///< the steps of `evaluate` that the user set
+    std::optional<OwnStep> own_step;  ///< simulated with every controller
     std::optional<device::DeviceModel>
         device;  ///< the user's own controller, for which entries are converted and evaluated
     IdentifiedRegion identified_region = IdentifiedRegion::where_needed;

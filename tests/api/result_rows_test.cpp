@@ -109,7 +109,7 @@ TEST(ResultRows, AsCsvHaveOneLineForEachController) {
 
 TEST(ResultRows, AsCsvHoldUnitsAndWhatIsToBeTyped) {
     const std::string result = result_of(
-        R"("units": {"time": "min"}, "tune": [{"method": "simc"}], "evaluate": {"points": 0},
+        R"("units": {"time": "min", "y": "degC"}, "tune": [{"method": "simc"}], "evaluate": {"points": 0},
            "baseline": {"form": "ideal", "Kp": 0.5, "Ti": 12},
            "implement": {"product": "emerson_deltav_standard", "y_span": [0, 200], "u_span": [0, 100]})");
     const Json value = Json::parse(result);
@@ -118,6 +118,8 @@ TEST(ResultRows, AsCsvHoldUnitsAndWhatIsToBeTyped) {
     const std::vector<std::string> lines = split_lines(out);
     ASSERT_EQ(lines.size(), 2u);
     EXPECT_EQ(under("time_unit", lines[0]), "min");
+    EXPECT_EQ(under("y_unit", lines[0]), "degC");
+    EXPECT_EQ(under("u_unit", lines[0]), "") << "not named";
     const Json& typed = value["controllers"][0]["as_entered"]["as_typed"];
     EXPECT_THAT(under("settings_to_type", lines[0]),
                 AllOf(HasSubstr("GAIN " + typed["GAIN"].get<std::string>() + " %/%"), HasSubstr("; STRUCTURE ")));
@@ -255,6 +257,17 @@ TEST(TracesCsv, OfFrequenciesAndOfAModel) {
                                "omega [rad/s],simc L re,simc L im,simc L phase [deg],simc |S|,simc |T|,simc |CS|\r\n"));
     EXPECT_EQ(traces_csv(R"({"model": {"fit": {"t": [0], "u": [1], "y": [2], "y_model": [3]}}})", Traces::model),
               "t [s],u,y,y_model\r\n0,1,2,3\r\n");
+}
+
+TEST(TracesCsv, NameTheUnitOfEveryColumn) {
+    const std::string fields = R"("tune": [{"method": "simc"}], "units": {"time": "min", "u": "%", "y": "degC"},
+        "evaluate": {"points": 3, "own_step": {"y": 20, "target": 30, "u_max": 100, "length": 4}})";
+    const std::string result = result_of(fields);
+    EXPECT_EQ(split_lines(traces_csv(result, Traces::responses).value_or("")).front(),
+              "simc t [min],simc setpoint y [degC],simc setpoint u [%],simc load y [degC],simc load u [%],"
+              "simc t [min],simc own step r [degC],simc own step y [degC],simc own step u [%]");
+    EXPECT_THAT(split_lines(traces_csv(result, Traces::frequency).value_or("")).front(),
+                testing::EndsWith("simc |S|,simc |T|,simc |CS| [%/degC]"));
 }
 
 TEST(TracesCsv, AreNothingWithoutPoints) {

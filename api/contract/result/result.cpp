@@ -3,6 +3,7 @@
 #include "api/contract/controller.h"
 #include "api/contract/device/device.h"
 #include "api/contract/methods.h"
+#include "api/contract/own_step.h"
 #include "api/contract/plant/plant.h"
 #include "api/contract/product/conversion.h"
 #include "api/contract/product/product.h"
@@ -286,6 +287,8 @@ const Description<TuningEntry>& entry_contract() {
         d.field("optimum_at_Ms", &TuningEntry::optimum_at_Ms, maybe(answer(optimum_contract())),
                 "Comparison with the least load IAE that a PID reaches at the same Ms, if requested.")
             .field("replay", &TuningEntry::replay, maybe(answer(replayed_entry_contract())), kEntryReplay)
+            .field("own_step", &TuningEntry::own_step, maybe(answer(own_step_entry_contract())),
+                   "With evaluate.own_step: that step with this controller.")
             .field("standing", &TuningEntry::standing, maybe(answer(standing_contract())), "Data for the ranking.");
         add_reports(d, true);
         evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Computing time of this entry, ms.");

@@ -77,6 +77,9 @@ OptionalFinding movement(const VerdictInput& c);              ///< movement of u
 // replayed.cpp
 OptionalFinding replayed(const VerdictInput& c);  ///< the recorded time with this controller
 
+// own_step.cpp
+OptionalFinding own_step(const VerdictInput& c);  ///< the user's own step, and how long it saturates u
+
 // actuator.cpp
 /// Steps that would need a steady-state u beyond its limits, with any controller.
 struct StepsBeyondActuator {

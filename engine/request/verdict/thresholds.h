@@ -50,6 +50,9 @@ inline constexpr double kMinNoisyMksOverKp = 20;      ///< Mks/|Kp|: beyond the 
 inline constexpr double kUsualN = 10;               ///< Td/Tf of the filter that is tried for a derivative without one
 inline constexpr double kMinNoiseOverRange = 0.02;  ///< standard deviation of u over the actuator's range
 
+/// Of u: what holds the target may exceed a limit by so much, by rounding.
+inline constexpr double kRelativeLimitRounding = 1e-9;
+
 // Choice of an entry
 
 /// A controller whose load IAE is more than this multiple of that of another one is not chosen, if both keep the

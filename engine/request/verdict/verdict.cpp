@@ -44,8 +44,8 @@ std::vector<Finding> verdict_on(const TuningEntry& entry, const TuningEntry* tod
         return verdict;
     }
     for (const auto& finding : {active_limit, all_members, margins, nonlinear_margins, large_errors, load_error,
-                                replayed, on_device, at_its_limits, actuator_too_small_as_assumed, movement, noise,
-                                sample_time, small_overshoot, PI_or_PID, excess, dead_time_rules, filter_rules})
+                                replayed, own_step, on_device, at_its_limits, actuator_too_small_as_assumed, movement,
+                                noise, sample_time, small_overshoot, PI_or_PID, excess, dead_time_rules, filter_rules})
         add(finding(c));
     std::stable_sort(verdict.begin() + after_heads, verdict.end(), [](const Finding& a, const Finding& b) {
         return (a.level >= Level::warning) > (b.level >= Level::warning);

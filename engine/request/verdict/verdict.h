@@ -5,6 +5,7 @@
 
 #include "engine/error.h"
 #include "engine/evaluation/evaluation.h"
+#include "engine/evaluation/own_step.h"
 #include "engine/identification/identify.h"
 #include "engine/plant/analysed_plant.h"
 #include "engine/progress.h"
@@ -23,7 +24,8 @@ struct Context {
     const IdentifiedModel* model = nullptr;  ///< the model that was identified from a record; null: none
     const TuningProblem* problem = nullptr;  ///< the input of the methods; null: nothing is designed
     GivenSteps given_steps = {};
-    RunControl control = {};  ///< of the request: a stopped search gives no cure
+    RunControl control = {};            ///< of the request: a stopped search gives no cure
+    const OwnStep* own_step = nullptr;  ///< null: the request has none
 };
 
 /// Writes every entry's verdict. The first finding is the main statement on the loop, and its level is the entry's. The

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/simulation/linear/run_setup.h"
@@ -34,10 +35,13 @@ double tracking_time(const LinearPlant& plant, const ParallelPid& controller) {
     return kTrackingTimeShare * (time > 0 ? time : 1 / std::abs(controller.Ki * plant.gain()));
 }
 
-LimitedLoop::LimitedLoop(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
+double tracking_gain_of(const LinearPlant& plant, const ParallelPid& controller) {
+    return controller.Ki != 0 ? 1 / (controller.Ki * tracking_time(plant, controller)) : 0;
+}
+
+LimitedLoop::LimitedLoop(DelaySystem system, double tracking_gain, const StepInputs& inputs,
                          const ActuatorLimits& limits)
-    : system_(make_delay_system(plant, controller)), in_(inputs), limits_(limits) {
-    if (controller.Ki != 0) tracking_gain_ = 1 / (controller.Ki * tracking_time(plant, controller));
+    : system_(std::move(system)), in_(inputs), limits_(limits), tracking_gain_(tracking_gain) {
     below_ = equations(Region::below);
     inside_ = equations(Region::inside);
     above_ = equations(Region::above);

@@ -25,8 +25,8 @@ struct LoopOutput {
 /// The delay system of `make_delay_system` with one more state, the integral of y - r, and the tracking term.
 class LimitedLoop {
 public:
-    LimitedLoop(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
-                const ActuatorLimits& limits);
+    /// `tracking_gain`: 1/(Ki Tt), 0 without integral action (tracking_gain_of).
+    LimitedLoop(DelaySystem system, double tracking_gain, const StepInputs& inputs, const ActuatorLimits& limits);
 
     int states() const { return system_.n + 1; }
     double dead_time() const { return system_.L; }
@@ -55,9 +55,11 @@ private:
     DelaySystem system_;
     StepInputs in_;
     ActuatorLimits limits_;
-    double tracking_gain_ = 0;  // 1/(Ki Tt)
+    double tracking_gain_;
     Equations below_, inside_, above_;
 };
+
+double tracking_gain_of(const LinearPlant& plant, const ParallelPid& controller);
 
 /// The loop's rest within its limits, or at one of them. There is no rest if a limit holds an integrating or unstable
 /// plant.

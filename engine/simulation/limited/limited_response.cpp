@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
+#include "engine/simulation/limited/limited_course.h"
 #include "engine/simulation/limited/limited_loop.h"
 #include "engine/simulation/linear/long_step.h"
 #include "engine/simulation/linear/response_end.h"
@@ -74,16 +76,17 @@ struct LoopInstant {
 /// The run: chooses step lengths, finds the crossings of the limits, stores the nodes, and decides when to stop.
 class LimitedRun {
 public:
-    LimitedRun(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
+    LimitedRun(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in, LimitedCourse course,
                const ActuatorLimits& limits, const ResponseOptions& options)
-        : loop_(plant, controller, in, limits),
-          system_(make_response_system(plant, controller, in)),
+        : loop_(course.system, tracking_gain_of(plant, controller), in, limits),
+          system_(make_response_system(course.system, in)),
           filter_(controller.filter),
           in_(in),
           limits_(limits),
           options_(options),
-          rest_(within_limits(steady_state(plant, controller, in), plant, limits, in.d)),
-          beyond_(beyond_bounds(plant, controller, in, limits, rest_.y)),
+          jumps_(std::move(course.jumps)),
+          rest_(course.rest),
+          beyond_(beyond_bounds(plant, controller, course.largest, limits, rest_.y)),
           history_(response_.nodes, in.d),
           echoes_(echoes_that_count(std::abs(loop_.system().N), options.tolerance, kRetardedEchoes)),
           stopping_(options.settled, loop_.dead_time()) {
@@ -92,6 +95,7 @@ public:
 
     StepResponse run() {
         now_.x.assign(Index(loop_.states()), 0.0);
+        pass_jumps();
         enter(loop_.region(now_.x, {}), {});
         add_echo(loop_.dead_time(), 0);
         while (static_cast<int>(response_.nodes.size()) < options_.max_steps) {
@@ -150,7 +154,7 @@ private:
 
     bool finished() const {
         if (options_.horizon) return now_.t + slack() >= *options_.horizon;
-        if (!rest_.exists) return false;
+        if (!rest_.exists || next_jump_ < jumps_.size()) return false;
         if (!stopping_.has_settled(now_.t)) return false;
         const auto remaining = remaining_error_integral();
         if (!remaining) return true;
@@ -247,6 +251,7 @@ private:
 
     double distance_to_next_stop() const {
         double distance = echoes_.next().value_or(kInfinity) - now_.t;
+        if (next_jump_ < jumps_.size()) distance = std::min(distance, jumps_[next_jump_].t - now_.t);
         if (options_.horizon) distance = std::min(distance, *options_.horizon - now_.t);
         return distance;
     }
@@ -335,14 +340,26 @@ private:
         return true;
     }
 
-    /// At an echo the delayed signal may jump, and so may the command.
+    /// At an echo the delayed signal may jump, and so may the command; at a jump of the states too.
     void pass_echo() {
         const auto passages = echoes_.pass(now_.t + slack());
-        if (!passages) return;
-        const Signal v = history_.at(now_.t - loop_.dead_time(), slack()).after;
+        const bool jumped = pass_jumps();
+        if (!passages && !jumped) return;
+        const Signal v = loop_.delayed() ? history_.at(now_.t - loop_.dead_time(), slack()).after : Signal{};
         const Region before = region_;
         enter(loop_.region(now_.x, v), v);
-        add_echo(now_.t + loop_.dead_time(), region_ == before ? *passages + 1 : 0);
+        add_echo(now_.t + loop_.dead_time(), passages && !jumped && region_ == before ? *passages + 1 : 0);
+        if (!jumped) return;
+        stopping_.start_again(now_.t);
+        level_ = 0;
+    }
+
+    /// True if a state jumps now.
+    bool pass_jumps() {
+        const Index before = next_jump_;
+        for (; next_jump_ < jumps_.size() && jumps_[next_jump_].t <= now_.t + slack(); ++next_jump_)
+            now_.x[Index(jumps_[next_jump_].state)] += jumps_[next_jump_].change;
+        return next_jump_ > before;
     }
 
     LimitedLoop loop_;
@@ -351,6 +368,8 @@ private:
     StepInputs in_;
     ActuatorLimits limits_;
     const ResponseOptions& options_;
+    std::vector<StateJump> jumps_;
+    Index next_jump_ = 0;
     SteadyState rest_;
     double beyond_;
     StepResponse response_;
@@ -371,7 +390,19 @@ private:
 
 StepResponse simulate_limited(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
                               const ActuatorLimits& limits, const ResponseOptions& options) {
-    return LimitedRun(plant, controller, inputs, limits, options).run();
+    return LimitedRun(plant, controller, inputs,
+                      {.system = make_delay_system(plant, controller),
+                       .jumps = {},
+                       .rest = within_limits(steady_state(plant, controller, inputs), plant, limits, inputs.d),
+                       .largest = inputs},
+                      limits, options)
+        .run();
+}
+
+StepResponse simulate_limited_course(const LinearPlant& plant, const ParallelPid& controller,
+                                     const LimitedCourse& course, const ActuatorLimits& limits,
+                                     const ResponseOptions& options) {
+    return LimitedRun(plant, controller, {}, course, limits, options).run();
 }
 
 }  // namespace tunewright

@@ -5,8 +5,12 @@ namespace tunewright {
 using Index = std::size_t;
 
 ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in) {
+    return make_response_system(make_delay_system(plant, controller), in);
+}
+
+ResponseSystem make_response_system(const DelaySystem& loop, const StepInputs& in) {
     ResponseSystem system;
-    system.s = make_delay_system(plant, controller);
+    system.s = loop;
     system.delayed = system.s.L > 0;
     if (!system.delayed) system.s = close_without_delay(system.s);
     const DelaySystem& s = system.s;

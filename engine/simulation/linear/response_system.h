@@ -27,6 +27,7 @@ struct ResponseSystem {
 
 /// Without a dead time the loop is closed: v consists of the load alone.
 ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in);
+ResponseSystem make_response_system(const DelaySystem& loop, const StepInputs& in);
 
 /// Contributions of the delayed signal v and of the constant inputs (times `constant`) to y, y', u and u'; that of the
 /// states is separate.

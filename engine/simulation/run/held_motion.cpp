@@ -10,15 +10,15 @@ namespace {
 using Index = std::size_t;
 }  // namespace
 
-HeldMotion::HeldMotion(const LinearPlant& plant, double direction, bool with_integral)
-    : n_(plant.realisation().n + (with_integral ? 1 : 0)),
+HeldMotion::HeldMotion(const Realisation& plant, double direction, bool with_integral)
+    : n_(plant.n + (with_integral ? 1 : 0)),
       A_(Index(n_ * n_), 0.0),
-      B_(plant.realisation().B),
-      C_(plant.realisation().C),
-      D_(direction * plant.realisation().D) {
+      B_(plant.B),
+      C_(plant.C),
+      D_(direction * plant.D) {
     for (double& c : C_) c *= direction;
-    const int own = plant.realisation().n;
-    for (int i = 0; i < own; ++i) std::copy_n(plant.realisation().A.begin() + i * own, own, A_.begin() + i * n_);
+    const int own = plant.n;
+    for (int i = 0; i < own; ++i) std::copy_n(plant.A.begin() + i * own, own, A_.begin() + i * n_);
     if (with_integral) {
         std::copy(C_.begin(), C_.end(), A_.begin() + own * n_);
         B_.push_back(D_);

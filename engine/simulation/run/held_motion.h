@@ -23,7 +23,9 @@ struct HeldStep {
 class HeldMotion {
 public:
     /// `direction` is 1 or -1. The integral of y is a last state if it is requested.
-    HeldMotion(const LinearPlant& plant, double direction, bool with_integral);
+    HeldMotion(const LinearPlant& plant, double direction, bool with_integral)
+        : HeldMotion(plant.realisation(), direction, with_integral) {}
+    HeldMotion(const Realisation& plant, double direction, bool with_integral);
 
     int states() const { return n_; }
     double direct_term() const { return D_; }

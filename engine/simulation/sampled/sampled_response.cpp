@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "engine/loop/sampled/held_plant.h"
@@ -13,6 +14,7 @@
 #include "engine/simulation/run/held_motion.h"
 #include "engine/simulation/run/loop_sizes.h"
 #include "engine/simulation/run/stopping_rule.h"
+#include "engine/simulation/sampled/sampled_course.h"
 
 namespace tunewright {
 namespace {
@@ -50,10 +52,15 @@ struct Piece {
 class SampledRun {
 public:
     SampledRun(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits, const StepInputs& inputs,
-               const SampledOptions& options);
+               SampledCourse course, const SampledOptions& options);
     StepResponse result();
 
 private:
+    void run_changing(Piece& piece, double t, double t_end, double v, double u);
+    bool changes_before(double t) const {
+        return next_jump_ < course_.jumps.size() && course_.jumps[next_jump_].t < t - kInstantTolerance * law_.Ts;
+    }
+    double setpoint(double t) const { return course_.setpoint ? course_.setpoint(t) : in_.r; }
     std::vector<Piece> pieces() const;
     double input(int k, bool arrived) const { return past(k - to_plant_.whole - (arrived ? 0 : 1)); }
     double output(int k, bool given) const { return past(k - computed_.whole - (given ? 0 : 1)); }
@@ -79,6 +86,8 @@ private:
 
     const SampledPid law_;
     const StepInputs in_;
+    const SampledCourse course_;
+    Index next_jump_ = 0;
     const SampledOptions options_;
     const double end_;  // the horizon
     PidProgram program_;
@@ -97,22 +106,22 @@ private:
 };
 
 SampledRun::SampledRun(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits,
-                       const StepInputs& inputs, const SampledOptions& options)
+                       const StepInputs& inputs, SampledCourse course, const SampledOptions& options)
     : law_(law),
       in_(inputs),
+      course_(std::move(course)),
       options_(options),
       end_(options.horizon.value_or(std::numeric_limits<double>::infinity())),
       program_(law, limits),
       to_plant_(in_samples(plant.dead_time() + law.computation_delay, law.Ts)),
       computed_(in_samples(law.computation_delay, law.Ts)),
       load_(in_samples(plant.dead_time(), law.Ts)),
-      rest_(rest_of(plant, law.gains, inputs)),
-      motion_(plant, 1, true),
+      rest_(course_.rest),
+      motion_(course_.plant, 1, true),
       pieces_(pieces()),
       x_(static_cast<Index>(motion_.states()), 0.0),
-      sizes_(loop_sizes(own_gain(plant, law.gains), law.gains, inputs)),
+      sizes_(loop_sizes(own_gain(plant, law.gains), law.gains, course_.largest)),
       rule_(options.settled, (to_plant_.whole + kRestSamples) * law.Ts) {
-    if (limits.output) rest_ = within_limits(rest_, plant, *limits.output, inputs.d);
     for (const auto pole : plant.poles()) fastest_swing_ = std::max(fastest_swing_, pole.imag());
     sizes_.y = std::max(sizes_.y, std::abs(rest_.y));
     sizes_.u = std::max(sizes_.u, std::abs(rest_.u));
@@ -144,6 +153,22 @@ bool SampledRun::swings(Piece& piece, int level, std::vector<double> x, const Re
     const double cubic =
         r * r * (1 + 2 * s) * left.y + s * s * (1 + 2 * r) * end.y + h * s * r * (r * left.y_slope - s * end.slope);
     return std::abs(cubic - y) > options_.tolerance * std::max(largest_y_, std::abs(y));
+}
+
+// A piece in which inputs that are states change.
+void SampledRun::run_changing(Piece& piece, double t, double t_end, double v, double u) {
+    while (changes_before(t_end)) {
+        const StateJump& jump = course_.jumps[next_jump_++];
+        if (jump.t > t + kInstantTolerance * law_.Ts) {
+            Piece part = this->piece(piece.from, jump.t - t, piece.arrived, piece.given);
+            run_piece(part, 0, t, jump.t, v, u);
+            t = jump.t;
+        }
+        x_[static_cast<Index>(jump.state)] += jump.change;
+        add_node(t, motion_.output(x_, v), u);
+    }
+    Piece last = this->piece(piece.from, t_end - t, piece.arrived, piece.given);
+    run_piece(last, 0, t, t_end, v, u);
 }
 
 // Runs from the last node over 2^-level of the piece: a node at its end, and more inside if a cubic is not accurate
@@ -182,6 +207,11 @@ void SampledRun::run_period(int k) {
         const bool jumps = v != last_v_ || response_.nodes.empty() || u != response_.nodes.back().u;
         if (jumps) add_node(t, motion_.output(x_, v), u);
         last_v_ = v;
+        if (changes_before(std::min(t_end, end_))) {
+            run_changing(piece, t, std::min(t_end, end_), v, u);
+            if (ends_by(t_end)) return;
+            continue;
+        }
         if (ends_by(t_end)) {
             if (t_end == end_) return run_piece(piece, 0, t, end_, v, u);
             Piece last = this->piece(piece.from, end_ - t, piece.arrived, piece.given);
@@ -194,7 +224,7 @@ void SampledRun::run_period(int k) {
 void SampledRun::sample(int k) {
     // Read just before anything changes at t_k: an input that arrives at that very time is not included.
     const double v = input(k, false) + (k > load_.whole ? in_.d : 0);
-    u_.push_back(program_.step(in_.r, motion_.value(x_, v)));
+    u_.push_back(program_.step(setpoint(k * law_.Ts), motion_.value(x_, v)));
 }
 
 void SampledRun::note(double t) {
@@ -213,7 +243,9 @@ StepResponse SampledRun::result() {
         if (k < 2) sizes_.u = std::max(sizes_.u, largest_u_);
         if (escaped()) break;
         note(t);
-        response_.settles = options_.horizon ? ends_by(t) : rest_.exists && rule_.has_settled(t);
+        if (t < course_.last_change) rule_.start_again(t);
+        response_.settles =
+            options_.horizon ? ends_by(t) : rest_.exists && t > course_.last_change && rule_.has_settled(t);
         if (response_.settles) break;
     }
     response_.y_final = rest_.y;
@@ -227,7 +259,17 @@ StepResponse SampledRun::result() {
 
 StepResponse simulate_sampled(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits,
                               const StepInputs& inputs, const SampledOptions& options) {
-    return SampledRun(plant, law, limits, inputs, options).result();
+    SteadyState rest = rest_of(plant, law.gains, inputs);
+    if (limits.output) rest = within_limits(rest, plant, *limits.output, inputs.d);
+    return SampledRun(plant, law, limits, inputs,
+                      {.plant = plant.realisation(), .jumps = {}, .setpoint = {}, .rest = rest, .largest = inputs},
+                      options)
+        .result();
+}
+
+StepResponse simulate_sampled_course(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits,
+                                     const SampledCourse& course, const SampledOptions& options) {
+    return SampledRun(plant, law, limits, {}, course, options).result();
 }
 
 namespace {

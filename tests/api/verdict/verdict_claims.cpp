@@ -79,6 +79,14 @@ const std::map<std::string, std::vector<std::string>>& places() {
         {"IAE_ratio_low", {"/replay/IAE_ratio_low"}},
         {"IAE_ratio_high", {"/replay/IAE_ratio_high"}},
         {"travel_ratio", {"/replay/travel_ratio"}},
+        {"overshoot", {"/own_step/setpoint/overshoot"}},
+        {"settling_time", {"/own_step/setpoint/settling_time"}},
+        {"peak", {"/own_step/load/peak"}},
+        {"recovery_time", {"/own_step/load/recovery_time"}},
+        {"time_at_max", {"/own_step/time_at_max"}},
+        {"time_at_min", {"/own_step/time_at_min"}},
+        {"u_needed", {"/own_step/u_needed"}},
+        {"y_final", {"/own_step/y_final"}},
         {"Ms_limit", {"/options/Ms", "/options/limit"}},
         {"Mt_limit", {"/options/Mt"}},
         {"Mks_limit", {"/options/Mks"}},
@@ -208,6 +216,17 @@ void check_finding(const Json& entry, const Json* today, const Json& finding, co
     if (code == "replay") {
         const double low = *at(entry, "/replay/IAE_ratio_low"), high = *at(entry, "/replay/IAE_ratio_high");
         fault(finding["level"] != (high < 1 ? "good" : low > 1 ? "warning" : "note"), "the band lies elsewhere");
+    }
+    if (code == "own-step-saturates") {
+        const auto spent = [&](const char* name) {
+            const auto time = at(entry, std::string("/own_step/") + name);
+            return !time || *time > 0;
+        };
+        fault(!spent("time_at_max") && !spent("time_at_min"), "u reaches no limit");
+    }
+    if (code == "own-step-out-of-reach") {
+        const double needed = *at(entry, "/own_step/u_needed"), held = figures["u_limit"];
+        fault((held == at(request, "/evaluate/own_step/u_max")) != (needed > held), "u_needed is within the limit");
     }
     if (code == "PI-as-good")
         fault(figures["PI_load_IAE"].get<double>() > 1.0501 * *at(entry, "/performance/load/IAE"), "PI is worse");

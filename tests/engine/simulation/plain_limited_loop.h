@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "engine/simulation/limited/limited_response.h"
@@ -11,8 +13,14 @@
 namespace tunewright {
 
 struct Figures {
-    double IAE = 0, overshoot = -std::numeric_limits<double>::infinity();
+    double IAE = 0, max_u = -std::numeric_limits<double>::infinity(), time_at_max = 0,
+           overshoot = -std::numeric_limits<double>::infinity();
     std::vector<double> y;  // at 1, 2, ... tenths of the horizon
+};
+
+/// Set point, load at the plant's input and load at its output over time.
+struct PlainInputs {
+    std::function<double(double)> r, d = [](double) { return 0.0; }, q = [](double) { return 0.0; };
 };
 
 /// The contract's control law and back-calculation written out, classical Runge-Kutta steps of L/m, delayed signal
@@ -20,7 +28,9 @@ struct Figures {
 class PlainSimulation {
 public:
     PlainSimulation(const LinearPlant& plant, const ParallelPid& c, StepInputs in, ActuatorLimits limits, double Tt)
-        : p_(plant.realisation()), c_(c), in_(in), limits_(limits), Tt_(Tt), L_(plant.dead_time()) {}
+        : PlainSimulation(plant, c, {[in](double) { return in.r; }, [in](double) { return in.d; }}, limits, Tt) {}
+    PlainSimulation(const LinearPlant& plant, const ParallelPid& c, PlainInputs in, ActuatorLimits limits, double Tt)
+        : p_(plant.realisation()), c_(c), in_(std::move(in)), limits_(limits), Tt_(Tt), L_(plant.dead_time()) {}
 
     Figures run(double horizon, double dt) {
         const int lag = static_cast<int>(std::lround(L_ / dt)), n = static_cast<int>(std::lround(horizon / dt));
@@ -29,10 +39,13 @@ public:
         const auto delayed = [&](int k) { return k >= lag ? w[static_cast<std::size_t>(k - lag)] : 0.0; };
         double last_error = 0;
         for (int k = 0; k <= n; ++k) {
-            const double u = std::clamp(command(state, delayed(k)), limits_.min, limits_.max);
-            w[static_cast<std::size_t>(k)] = u + in_.d;
-            const double y = output(state, lag > 0 ? delayed(k) : 0), error = in_.r - y;
-            figures.overshoot = std::max(figures.overshoot, y - in_.r);
+            t_ = k * dt;
+            const double u = std::clamp(command(state, delayed(k)), limits_.min, limits_.max), r = in_.r(t_);
+            w[static_cast<std::size_t>(k)] = u + in_.d(t_);
+            const double y = output(state, lag > 0 ? delayed(k) : 0), error = r - y;
+            figures.overshoot = std::max(figures.overshoot, y - r);
+            figures.max_u = std::max(figures.max_u, u);
+            if (u >= limits_.max) figures.time_at_max += dt;
             if (k > 0) figures.IAE += 0.5 * dt * (std::abs(error) + std::abs(last_error));
             last_error = error;
             if (k > 0 && k % (n / 10) == 0) figures.y.push_back(y);
@@ -47,7 +60,7 @@ private:
     using State = std::vector<double>;
 
     double output(const State& s, double v) const {
-        double y = p_.D * v;
+        double y = p_.D * v + in_.q(t_);
         for (int i = 0; i < p_.n; ++i) y += p_.C[static_cast<std::size_t>(i)] * s[static_cast<std::size_t>(i)];
         return y;
     }
@@ -57,48 +70,51 @@ private:
         const double I = s[f + 2];
         switch (c_.filter.type) {
             case FilterType::derivative:
-                return c_.Kp * (c_.b * in_.r - y) + I + c_.Kd * ((c_.c * in_.r - y) - s[f]) / Tf;
-            case FilterType::measurement_second_order: return c_.Kp * (c_.b * in_.r - s[f]) + I - c_.Kd * s[f + 1];
-            default: return c_.Kp * (c_.b * in_.r - y) + I;
+                return c_.Kp * (c_.b * in_.r(t_) - y) + I + c_.Kd * ((c_.c * in_.r(t_) - y) - s[f]) / Tf;
+            case FilterType::measurement_second_order: return c_.Kp * (c_.b * in_.r(t_) - s[f]) + I - c_.Kd * s[f + 1];
+            default: return c_.Kp * (c_.b * in_.r(t_) - y) + I;
         }
     }
     State rates(const State& s, double v, bool no_delay) const {
         const std::size_t f = static_cast<std::size_t>(p_.n);
         State rate(s.size(), 0.0);
         const double uc = command(s, v), u = std::clamp(uc, limits_.min, limits_.max);
-        if (no_delay) v = u + in_.d;  // D = 0 there
+        if (no_delay) v = u + in_.d(t_);  // D = 0 there
         const double y = output(s, v), Tf = c_.filter.Tf;
         for (std::size_t i = 0; i < f; ++i) {
             rate[i] = p_.B[i] * v;
             for (std::size_t j = 0; j < f; ++j) rate[i] += p_.A[i * f + j] * s[j];
         }
         double yf = y;
-        if (c_.filter.type == FilterType::derivative) rate[f] = ((c_.c * in_.r - y) - s[f]) / Tf;
+        if (c_.filter.type == FilterType::derivative) rate[f] = ((c_.c * in_.r(t_) - y) - s[f]) / Tf;
         if (c_.filter.type == FilterType::measurement_second_order) {
             yf = s[f];
             rate[f] = s[f + 1];
             rate[f + 1] = (y - s[f] - Tf * s[f + 1]) * 2 / (Tf * Tf);
         }
-        rate[f + 2] = c_.Ki * (in_.r - yf) + (u - uc) / Tt_;
+        rate[f + 2] = c_.Ki * (in_.r(t_) - yf) + (u - uc) / Tt_;
         return rate;
     }
-    void runge_kutta(State& s, double dt, double v0, double v1, bool no_delay) const {
+    void runge_kutta(State& s, double dt, double v0, double v1, bool no_delay) {
         const auto at = [&](const State& k, double h) {
             State moved = s;
             for (std::size_t i = 0; i < s.size(); ++i) moved[i] += h * k[i];
             return moved;
         };
         const double vm = 0.5 * (v0 + v1);
-        const State k1 = rates(s, v0, no_delay), k2 = rates(at(k1, dt / 2), vm, no_delay),
-                    k3 = rates(at(k2, dt / 2), vm, no_delay), k4 = rates(at(k3, dt), v1, no_delay);
+        const State k1 = rates(s, v0, no_delay);
+        t_ += dt / 2;
+        const State k2 = rates(at(k1, dt / 2), vm, no_delay), k3 = rates(at(k2, dt / 2), vm, no_delay);
+        t_ += dt / 2;
+        const State k4 = rates(at(k3, dt), v1, no_delay);
         for (std::size_t i = 0; i < s.size(); ++i) s[i] += dt / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
     }
 
     const Realisation& p_;
     ParallelPid c_;
-    StepInputs in_;
+    PlainInputs in_;
     ActuatorLimits limits_;
-    double Tt_, L_;
+    double Tt_, L_, t_ = 0;
 };
 
 }  // namespace tunewright

@@ -50,16 +50,16 @@ struct CourseCase {
     double horizon;
 };
 
-const Filter kSlow{FilterType::measurement_second_order, 0.2}, kDerivative{FilterType::derivative, 0.1};
+const Filter kSlowFilter{FilterType::measurement_second_order, 0.2}, kOnDerivative{FilterType::derivative, 0.1};
 
 CourseLoad load(double size, double start, LoadShape shape = LoadShape::step, double duration = 0,
                 bool at_output = false) {
     return {size, at_output, shape, duration, start};
 }
 
-std::vector<CourseCase> cases() {
+std::vector<CourseCase> course_cases() {
     const Plant lag = Fopdt{.K = 2, .T = 3, .L = 0.5}, second = Sopdt{.K = 1, .T1 = 2, .T2 = 0.7, .L = 0.3};
-    const ParallelPid PI{.Kp = 0.9, .Ki = 0.3}, PID{.Kp = 3, .Ki = 1.2, .Kd = 1.5, .filter = kSlow};
+    const ParallelPid PI{.Kp = 0.9, .Ki = 0.3}, PID{.Kp = 3, .Ki = 1.2, .Kd = 1.5, .filter = kSlowFilter};
     return {
         {"step at once, load at the input", lag, PI, {1, 0, load(0.5, 20)}, {-1, 0.8}, 50},
         {"ramp, load at the input", lag, PI, {1, 5, load(-0.4, 20)}, {-1, 0.8}, 50},
@@ -70,7 +70,7 @@ std::vector<CourseCase> cases() {
         {"ramp at the output", second, PID, {1, 4, load(0.5, 20, LoadShape::ramp, 5, true)}, {-0.2, 1.3}, 50},
         {"derivative filter with set-point weights",
          second,
-         {.Kp = 3, .Ki = 1.2, .Kd = 1.5, .b = 0.7, .c = 1, .filter = kDerivative},
+         {.Kp = 3, .Ki = 1.2, .Kd = 1.5, .b = 0.7, .c = 1, .filter = kOnDerivative},
          {1, 3, load(0.4, 20, LoadShape::step, 0, true)},
          {-2, 2},
          50},
@@ -89,10 +89,11 @@ double sampled_y(const StepResponse& response, double horizon, int i, int n) {
 }
 
 TEST(Course, AgreesWithAPlainSimulationInTinySteps) {
-    for (const CourseCase& c : cases()) {
+    for (const CourseCase& c : course_cases()) {
         SCOPED_TRACE(c.name);
         const LinearPlant plant = plant_of(c.plant);
-        const StepResponse response = simulate_course(plant, c.gains, c.course, c.limits, {.horizon = c.horizon});
+        const StepResponse response =
+            simulate_course(plant, c.gains, c.course, c.limits, {.tail = {}, .horizon = c.horizon});
         const Figures expected =
             PlainSimulation(plant, c.gains, plain(c.course), c.limits, tracking(plant, c.gains)).run(c.horizon, 1e-3);
         ASSERT_EQ(response.nodes.back().t, c.horizon);
@@ -113,12 +114,12 @@ TEST(Course, AgreesWithAPlainSimulationInTinySteps) {
 // ramp is their integral.
 TEST(Course, IsTheSuperpositionOfStepsWithoutLimits) {
     const LinearPlant plant = plant_of(Sopdt{.K = 1.5, .T1 = 4, .T2 = 1, .L = 0.8});
-    const ParallelPid gains{.Kp = 1.2, .Ki = 0.3, .Kd = 1, .b = 0.6, .filter = kSlow};
-    const StepResponse of_r = simulate_linear(plant, gains, {1, 0}, {.tolerance = 1e-8, .horizon = 60.0}),
-                       of_d = simulate_linear(plant, gains, {0, 1}, {.tolerance = 1e-8, .horizon = 60.0});
+    const ParallelPid gains{.Kp = 1.2, .Ki = 0.3, .Kd = 1, .b = 0.6, .filter = kSlowFilter};
+    const StepResponse of_r = simulate_linear(plant, gains, {1, 0}, {.tolerance = 1e-8, .tail = {}, .horizon = 60.0}),
+                       of_d = simulate_linear(plant, gains, {0, 1}, {.tolerance = 1e-8, .tail = {}, .horizon = 60.0});
     const Course course{2, 6, load(0.7, 25, LoadShape::pulse, 5)};
     const StepResponse response =
-        simulate_course(plant, gains, course, {-kNone, kNone}, {.tolerance = 1e-8, .horizon = 60.0});
+        simulate_course(plant, gains, course, {-kNone, kNone}, {.tolerance = 1e-8, .tail = {}, .horizon = 60.0});
     const auto y_of = [](const StepResponse& step, double t) {
         return t <= 0 ? 0.0 : sampled(step.nodes, t, 2).back().first;
     };
@@ -159,13 +160,13 @@ TEST(Course, RestsWhereTheEquationsOfRestSay) {
 
 // The sampled loop: plant and inputs in tiny Euler steps, the program of the contract called at its samples.
 TEST(SampledCourse, AgreesWithTheProgramCalledStepByStep) {
-    for (const CourseCase& c : cases()) {
+    for (const CourseCase& c : course_cases()) {
         if (c.gains.filter.type == FilterType::derivative) continue;
         SCOPED_TRACE(c.name);
         const LinearPlant plant = plant_of(c.plant);
         const SampledPid law{.gains = c.gains, .Ts = 0.25};
         const ProgramLimits limits{.output = c.limits};
-        const StepResponse response = simulate_course(plant, law, limits, c.course, {.horizon = c.horizon});
+        const StepResponse response = simulate_course(plant, law, limits, c.course, {.tail = {}, .horizon = c.horizon});
         PidProgram program(law, limits);
         const PlainInputs in = plain(c.course);
         constexpr double dt = 5e-4;
@@ -198,14 +199,15 @@ TEST(SampledCourse, AgreesWithTheProgramCalledStepByStep) {
 }
 
 TEST(SampledCourse, ApproachesTheContinuousLoopAsTheSampleTimeFalls) {
-    const CourseCase c = cases()[0];
+    const CourseCase c = course_cases()[0];
     const LinearPlant plant = plant_of(c.plant);
     const ActuatorLimits wide{-100, 100};
-    const StepResponse continuous = simulate_course(plant, c.gains, c.course, wide, {.horizon = c.horizon});
+    const StepResponse continuous = simulate_course(plant, c.gains, c.course, wide, {.tail = {}, .horizon = c.horizon});
     double before = kNone;
     for (const double Ts : {0.4, 0.1, 0.025}) {
-        const StepResponse with_samples = simulate_course(plant, SampledPid{.gains = c.gains, .Ts = Ts},
-                                                          {.output = wide}, c.course, {.horizon = c.horizon});
+        const StepResponse with_samples =
+            simulate_course(plant, SampledPid{.gains = c.gains, .Ts = Ts}, {.output = wide}, c.course,
+                            {.tail = {}, .horizon = c.horizon});
         double worst = 0;
         for (int i = 1; i <= 200; ++i)
             worst = std::max(

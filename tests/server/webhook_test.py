@@ -182,7 +182,7 @@ class AgainTest(WebhookTest):
         self.assertEqual((one["webhook-id"], body), (two["webhook-id"], again))
         self.assertEqual(two["webhook-signature"], signature(self.secret, two, again))
         self.assertLess(int(one["webhook-timestamp"]), int(two["webhook-timestamp"]))
-        self.wait_for_log(service, "try 2")
+        self.wait_for_log(service, "attempt 2")
         self.assertIn("it answers 500; the next attempt is in", service.read_log())
         self.assertEqual((self.metric(service, "failed"), self.metric(service, "delivered")), (1, 1))
 

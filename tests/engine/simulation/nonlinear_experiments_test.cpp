@@ -13,7 +13,7 @@
 namespace tunewright {
 namespace {
 
-NonlinearSystem written_out(const Plant& plant) { return *as_equations(*LinearPlant::make(plant)); }
+NonlinearSystem as_system(const Plant& plant) { return *as_equations(*LinearPlant::make(plant)); }
 
 RelaySettings settings(double amplitude, double hysteresis) {
     RelaySettings settings;
@@ -31,7 +31,7 @@ IdentifiedModel identified(const StepTest& test, ModelChoice model) {
 TEST(NonlinearStepTest, OfALinearPlantIsItsStepResponse) {
     for (const Plant& plant : {Plant(Fopdt{.K = 2, .T = 3, .L = 1}), Plant(Sopdt{.K = -1, .T1 = 4, .T2 = 1, .L = 0}),
                                Plant(OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.3, .L = 0.2})}) {
-        const auto test = simulate_step_test(written_out(plant), 0.5, {});
+        const auto test = simulate_step_test(as_system(plant), 0.5, {});
         ASSERT_TRUE(test);
         EXPECT_TRUE(test->settled);
         EXPECT_EQ(test->du, 0.5);
@@ -55,7 +55,7 @@ TEST(NonlinearStepTest, OfALinearPlantIsItsStepResponse) {
 }
 
 TEST(NonlinearStepTest, IsReadByIdentificationLikeAMeasuredOne) {
-    const auto test = simulate_step_test(written_out(Fopdt{.K = 2, .T = 3, .L = 1}), -1, {});
+    const auto test = simulate_step_test(as_system(Fopdt{.K = 2, .T = 3, .L = 1}), -1, {});
     const auto model = identified(*test, ModelChoice::fopdt);
     const auto& fopdt = std::get<Fopdt>(model.plant);
     EXPECT_NEAR(fopdt.K, 2, 2e-3);
@@ -83,13 +83,13 @@ TEST(NonlinearStepTest, OfTheStirredTankGivesTheReferencesModels) {
 }
 
 TEST(NonlinearStepTest, OfPlantsThatDoNotSettleMovesEnoughToSeeThem) {
-    const auto ramp = simulate_step_test(written_out(Ipdt{.K = 0.5, .L = 2}), 1, {});
+    const auto ramp = simulate_step_test(as_system(Ipdt{.K = 0.5, .L = 2}), 1, {});
     ASSERT_TRUE(ramp);
     EXPECT_FALSE(ramp->settled);
     const auto integrating = identified(*ramp, ModelChoice::ipdt);
     EXPECT_NEAR(std::get<Ipdt>(integrating.plant).K, 0.5, 1e-3);
     EXPECT_NEAR(std::get<Ipdt>(integrating.plant).L, 2, 1e-2);
-    const auto growing = simulate_step_test(written_out(Fopdt{.K = 1, .T = -3, .L = 0.5}), 1, {});
+    const auto growing = simulate_step_test(as_system(Fopdt{.K = 1, .T = -3, .L = 0.5}), 1, {});
     ASSERT_TRUE(growing);
     EXPECT_FALSE(growing->settled);
     EXPECT_GT(std::abs(growing->y.back()), 10);
@@ -127,7 +127,7 @@ TEST(NonlinearRelayTest, OfALinearPlantHasItsLimitCycle) {
                           Case{Zpk{.K = 1, .zeros = {}, .poles = {-1.0, -1.0, -1.0}, .L = 0}, 1, 0.05},
                           Case{Ipdt{.K = 0.5, .L = 1}, 2, 0.1}, Case{Sopdt{.K = 1, .T1 = 2, .T2 = 1, .L = 0}, 1, 0.1},
                           Case{Fopdt{.K = 1, .T = -3, .L = 0.5}, 1, 0.0}}) {
-        const auto test = simulate_relay_test(written_out(c.plant), c.amplitude, c.hysteresis, {});
+        const auto test = simulate_relay_test(as_system(c.plant), c.amplitude, c.hysteresis, {});
         ASSERT_TRUE(test) << test.error().message;
         const auto exact = simulate_relay(c.plant, settings(c.amplitude, c.hysteresis), {});
         ASSERT_TRUE(exact);
@@ -157,7 +157,7 @@ TEST(NonlinearRelayTest, OfSmallAmplitudeNearsTheLinearUltimatePoint) {
 }
 
 TEST(NonlinearRelayTest, IsReadByIdentificationLikeAMeasuredOne) {
-    const auto test = simulate_relay_test(written_out(Fopdt{.K = 2, .T = 3, .L = 1}), 1, 0.1, {});
+    const auto test = simulate_relay_test(as_system(Fopdt{.K = 2, .T = 3, .L = 1}), 1, 0.1, {});
     Record record{.t = test->record.t,
                   .u = test->record.u,
                   .y = test->record.y,

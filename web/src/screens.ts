@@ -106,7 +106,7 @@ export function screens(
     const { start: texts } = entryState();
     if (!texts) return false;
     const shown = startScreen();
-    if (JSON.stringify(texts) !== JSON.stringify(shown.texts())) {
+    if (texts.id !== shown.texts().id) {
       shown.restore(texts);
       const { test } = store.get();
       if (texts.kind === "record" && test) shown.loadRecord(test.record, test.identify);

@@ -47,6 +47,8 @@ export type LoopKind = "model" | "equations" | "record" | "ultimate";
 
 /** The content of the form as typed, without a record. */
 export interface StartTexts {
+  /** The loop that they describe: changes on Identify are its changes too. */
+  id: string;
   kind: LoopKind | null;
   model: { form: string; values: Record<string, string> };
   equations: Record<string, string>;
@@ -102,6 +104,9 @@ export function startView(store: Store, events: StartEvents): StartView {
   let ofExample = false;
   /** Number of loops so far. */
   let loops = 0;
+  let ids = 0;
+  const nextId = (): string => `${performance.timeOrigin}/${(ids += 1)}`;
+  let id = nextId();
   const kept = keptNote("the request", () => {
     base = {};
     showKept();
@@ -213,6 +218,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   /** A new loop does not inherit values of the previous loop or of a filled form; values typed since then are kept. */
   function beginLoop(kind: LoopKind): void {
     loops += 1;
+    id = nextId();
     ofExample = false;
     loop = kind;
     base = {};
@@ -228,6 +234,7 @@ export function startView(store: Store, events: StartEvents): StartView {
 
   /** A job was created: the whole form belongs to that loop. */
   function endLoop(): void {
+    id = nextId();
     for (const card of [today, methods, record]) card.endLoop();
   }
 
@@ -359,6 +366,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   function restore(texts: StartTexts): void {
     errors.clear();
     loops += 1;
+    id = texts.id;
     ofExample = false;
     loop = texts.kind;
     model.loadTyped(texts.model.form, texts.model.values);
@@ -468,6 +476,7 @@ export function startView(store: Store, events: StartEvents): StartView {
       if (Object.keys(values).some((name) => ABOUT_LOOP.test(name))) showLoop(values);
     },
     texts: () => ({
+      id,
       kind: loop,
       model: model.typed(),
       equations: equations.typed(),

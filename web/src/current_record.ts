@@ -1,4 +1,5 @@
-// The current recorded test survives a reload of its tab, if the browser has room for it.
+// What survives a reload of its tab, if the browser has room for it: the current recorded test, and the request that a
+// screen hands to the API's page.
 import type { IdentifyRequest } from "./api/types.ts";
 
 const STORED_AS = "tunewright-record";
@@ -30,4 +31,31 @@ const isObject = (value: unknown): value is Record<string, unknown> => typeof va
 /** The stored text may come from an older page, or from elsewhere. */
 export function readTest(data: unknown): IdentifyRequest | null {
   return isObject(data) && isObject(data["record"]) ? (data as unknown as IdentifyRequest) : null;
+}
+
+export interface CarriedRequest {
+  /** Of its call, such as "v1/jobs". */
+  path: string;
+  request: unknown;
+}
+
+const CARRIED_AS = "tunewright-carried";
+let carried: CarriedRequest | null = null;
+
+export function carry(request: CarriedRequest): void {
+  carried = request;
+  try {
+    sessionStorage.setItem(CARRIED_AS, JSON.stringify(request));
+  } catch {
+    // Without storage or room it is lost on a reload.
+  }
+}
+
+export function carriedRequest(): CarriedRequest | null {
+  try {
+    carried ??= JSON.parse(sessionStorage.getItem(CARRIED_AS) ?? "null") as CarriedRequest | null;
+  } catch {
+    carried = null;
+  }
+  return typeof carried?.path === "string" ? carried : null;
 }

@@ -3,7 +3,7 @@ import { answerOf, sentenceOf } from "../api/client.ts";
 import { h, uniqueId } from "../dom.ts";
 import { copyButton } from "../views/copy.ts";
 import { curlText } from "../views/request_menu.ts";
-import type { CarriedRequest } from "../carried_request.ts";
+import type { CarriedRequest } from "../current_record.ts";
 import { asText, examplesOf } from "./openapi.ts";
 import type { ApiDocument, ApiParameter, Call, NamedExample } from "./openapi.ts";
 

@@ -4,7 +4,7 @@ import { h, uniqueId } from "../dom.ts";
 import { formatRoute } from "../routes.ts";
 import type { View } from "../views/start.ts";
 import { documentAddress } from "../words/documents.ts";
-import { carriedRequest } from "../carried_request.ts";
+import { carriedRequest } from "../current_record.ts";
 import { fieldTree } from "./field_tree.ts";
 import { callsOf } from "./openapi.ts";
 import type { ApiDocument, Call } from "./openapi.ts";

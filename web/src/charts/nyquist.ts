@@ -1,6 +1,6 @@
 // The Nyquist curve of L with the circles that it must not enter.
-import type { FrequencyTraces, TuningRequest } from "../api/types.ts";
-import type { Frame, Mark } from "../plot/frame.ts";
+import type { Entry, FrequencyTraces, TuningRequest } from "../api/types.ts";
+import type { Frame, Mark, OnDrag } from "../plot/frame.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
 import type { Drawn } from "./drawn.ts";
 import type { Limits } from "../words/limits.ts";
@@ -15,7 +15,23 @@ function complementaryCircle(Mt: number): { x: number; radius: number } {
   return { x: -(Mt * Mt) / (Mt * Mt - 1), radius: Mt / (Mt * Mt - 1) };
 }
 
-export function nyquistFrame(drawn: Drawn[], limits: Limits, request: TuningRequest | undefined): Frame {
+/** The curve that can be dragged, and the slider that follows. */
+export interface CurveGrip {
+  index: number;
+  label: string;
+  drag: OnDrag;
+}
+
+/** The point of L that is nearest to −1. */
+function nearest(entry: Entry): { x: number; y: number } | null {
+  const { re = [], im = [] } = entry.frequency?.L ?? {};
+  const away = (index: number): number => Math.hypot((re[index] ?? Infinity) + 1, im[index] ?? Infinity);
+  const at = re.reduce<number>((best, _, index) => (away(index) < away(best) ? index : best), 0);
+  const [x, y] = [re[at], im[at]];
+  return typeof x === "number" && typeof y === "number" ? { x, y } : null;
+}
+
+export function nyquistFrame(drawn: Drawn[], limits: Limits, request: TuningRequest | undefined, grip?: CurveGrip | null): Frame {
   const units = unitNames(request?.units);
   const achieved = drawn[0]?.entry.robustness;
   const Ms = limits.Ms ?? achieved?.Ms ?? null;
@@ -30,9 +46,14 @@ export function nyquistFrame(drawn: Drawn[], limits: Limits, request: TuningRequ
   if (Ms !== null && Ms > 1)
     marks.push({ kind: "circle", ...sensitivityCircle(Ms), y: 0, label: `Ms ${formatNumber(Ms)}`, labelAt: "above" });
   marks.push({ kind: "point", x: -1, y: 0, label: "−1" });
+  const held = grip && drawn.find(({ index }) => index === grip.index);
+  const point = held && nearest(held.entry);
+  if (point) marks.push({ kind: "point", ...point, label: `drag: ${grip.label}`, look: held.look, quiet: true, handle: true });
   return {
+    ...(point ? { drag: grip.drag } : {}),
     title: "Nyquist curve of L",
     description:
+      (point ? `${held.name} can be dragged to or from −1, which moves ${grip.label}. ` : "") +
       drawn
         .map(
           (item) => `${item.name}: nearest to −1 at a distance of ${formatNumber(inverse(item.entry.robustness?.Ms))}.`,
@@ -47,7 +68,7 @@ export function nyquistFrame(drawn: Drawn[], limits: Limits, request: TuningRequ
           if (!frequency) return [];
           const { re: x, im: y } = frequency.L;
           const winding = windingOf(frequency);
-          return [{ name: item.name, look: item.look, x, y, parameter: frequency.omega, ...(winding ? { winding } : {}) }];
+          return [{ name: item.name, look: item.look, x, y, parameter: frequency.omega, grab: item === held, ...(winding ? { winding } : {}) }];
         }),
         marks: [{ kind: "upright", value: 0, role: "zero" }, ...marks],
       },

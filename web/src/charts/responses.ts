@@ -1,7 +1,7 @@
 // Set-point and load responses: y over u on one time axis.
 import type { Figures, TuningRequest } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
-import type { Frame, Mark, Trace } from "../plot/frame.ts";
+import type { Frame, Look, Mark, OnDrag, Trace } from "../plot/frame.ts";
 import { formatNumber, unitNames, withUnit } from "../words/numbers.ts";
 import { inputOf } from "../words/plant.ts";
 import type { Drawn } from "./drawn.ts";
@@ -16,12 +16,21 @@ export const hasLinear = (drawn: Drawn[]): boolean => drawn.some((item) => item.
 export const BESIDE_LINEAR =
   "Responses are those of the equations; thin and dotted: the same controller on their linear model.";
 
+/** The peak that can be dragged, and the slider that follows. */
+export interface PeakGrip {
+  at: { t: number; y: number } | null;
+  look: Look;
+  label: string;
+  drag: OnDrag;
+}
+
 /** `selected`: the entry whose linear counterpart is drawn if there are many. */
 export function responseFrame(
   kind: "setpoint" | "load",
   drawn: Drawn[],
   request: TuningRequest | undefined,
   selected?: number,
+  grip?: PeakGrip | null,
 ): Frame {
   const units = unitNames(request?.units);
   const traces = (signal: "y" | "u"): Trace[] =>
@@ -39,12 +48,16 @@ export function responseFrame(
   const step = request?.evaluate?.setpoint_step ?? 1;
   const setpoint: Mark[] =
     kind === "setpoint" ? [{ kind: "level", value: step, role: "setpoint", label: "set point" }] : [];
+  const handle: Mark[] = grip?.at
+    ? [{ kind: "point", x: grip.at.t, y: grip.at.y, label: `drag: ${grip.label}`, look: grip.look, quiet: true, handle: true }]
+    : [];
   return {
+    ...(grip?.at ? { drag: grip.drag } : {}),
     title: kind === "setpoint" ? "Set-point step" : "Load step at the plant input",
-    description: describe(kind, drawn, units.time, units.y),
+    description: `${describe(kind, drawn, units.time, units.y)}${grip?.at ? ` The peak can be dragged, which moves ${grip.label}.` : ""}`,
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes: [
-      { y: { kind: "linear", label: withUnit("y", units.y) }, traces: traces("y"), marks: setpoint, weight: 1.5 },
+      { y: { kind: "linear", label: withUnit("y", units.y) }, traces: traces("y"), marks: [...setpoint, ...handle], weight: 1.5 },
       {
         y: { kind: "linear", label: withUnit("u", units.u) },
         traces: traces("u"),

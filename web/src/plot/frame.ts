@@ -5,9 +5,14 @@ import type { Range, ScaleKind } from "./axis.ts";
 /** The look of a line. 1 to 4 are the series of a comparison; "data" are measured samples. */
 export type Look = 1 | 2 | 3 | 4 | "data";
 
+/** A grabbed place was dragged to a point, in the axes' units; `released`: the drag has ended; `from`: where it began. */
+export type OnDrag = (to: { x: number; y: number }, released: boolean, from: { x: number; y: number }) => void;
+
 export interface Trace {
   name: string;
   look: Look;
+  /** It can be grabbed anywhere, if the frame can be dragged. */
+  grab?: boolean;
   /** Thin and dotted, in the look's colour: a companion of a line with the same look. */
   thin?: boolean;
   x: readonly (number | null)[];
@@ -71,6 +76,8 @@ export interface Frame {
   cursorKind: ScaleKind;
   /** Dragging over the plot chooses a range of x instead of zooming. Shift and drag zooms. */
   brush?: (from: number, to: number) => void;
+  /** Its handles, and the curves that can be grabbed, are dragged. */
+  drag?: OnDrag;
   /** Another view of the same subject, which a button shows instead. */
   alternative?: Frame;
   /** File name of exports, without ending. */

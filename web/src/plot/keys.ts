@@ -10,6 +10,7 @@ export const PLOT_KEYS: readonly KeyMeaning[] = [
   { keys: "Home, End", meaning: "move the cursor to an end" },
   { keys: "+ and −", meaning: "zoom" },
   { keys: "0", meaning: "shows everything" },
+  { keys: "F", meaning: "enlarges the plot; F or Escape goes back" },
   { keys: "T", meaning: "shows the data as a table" },
 ];
 

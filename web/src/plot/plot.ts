@@ -4,7 +4,10 @@ import { joinLink, moveCursor, zoomTogether } from "./cursor.ts";
 import type { CursorPosition, Listener } from "./cursor.ts";
 import { dataTable } from "./data_table.ts";
 import { download, exportHeight, frameToCsv, frameToSvg, lightPalette, svgToPng } from "./export.ts";
+import { enlarging } from "./enlarge.ts";
 import type { Frame } from "./frame.ts";
+import { isGrab } from "./grab.ts";
+import type { Place } from "./grab.ts";
 import { KEYS_SENTENCE } from "./keys.ts";
 import { layoutFrame, wholeView } from "./layout.ts";
 import type { Layout, PaneBox, View } from "./layout.ts";
@@ -21,9 +24,6 @@ export interface Plot {
   dispose(): void;
 }
 
-/** A handle was dragged to this point, in the axes' units; `released`: the drag has ended. */
-export type OnDrag = (x: number, y: number, released: boolean) => void;
-
 /** Elements on top of the drawing, positioned from its upper left corner, which follow its layout. */
 export interface PlotHandles {
   element: HTMLElement;
@@ -34,14 +34,11 @@ export interface PlotHandles {
 export type Announce = (sentence: string) => void;
 
 const DRAG_MIN_PX = 6;
-const HANDLE_PX = 14;
-const TOUCH_PX = 28;
 const NAME_PX = 9;
 
 export function createPlot(
   first: Frame,
   announce: Announce,
-  onDrag: OnDrag | null = null,
   handles: PlotHandles | null = null,
 ): Plot {
   let given = first;
@@ -107,19 +104,30 @@ export function createPlot(
     ),
   );
   closesItself(exportMenu);
+  const largeOf = h("span", { class: "visually-hidden" });
+  const largeButton = h("button", { type: "button", class: "quiet", onclick: () => large.toggle() }, "Enlarge", largeOf);
   const legend = h("div", { class: "legend-slot", hidden: !frame.ownLegend });
   const element = h(
     "section",
     { class: "card plot", "aria-labelledby": title.id },
-    h("header", {}, title, legend, h("div", { class: "tools" }, resetButton, otherButton, tableButton, exportMenu)),
+    h("header", {}, title, legend, h("div", { class: "tools" }, resetButton, otherButton, largeButton, tableButton, exportMenu)),
     description,
     handles?.element ?? null,
     svg,
-    h("p", { class: "keys", "aria-hidden": "true" }, "← → cursor   + − zoom   0 all   T table"),
+    h("p", { class: "keys", "aria-hidden": "true" }, "← → cursor   + − zoom   0 all   T table   F enlarge"),
     table,
+  );
+  const large = enlarging(
+    element,
+    () => frame.title,
+    (isLarge) => {
+      largeButton.hidden = isLarge;
+      svg.focus();
+    },
   );
   table.addEventListener("keydown", (event) => {
     if (event.key !== "Escape") return;
+    event.preventDefault();
     toggleTable();
     svg.focus();
   });
@@ -178,16 +186,20 @@ export function createPlot(
   /** The box at a vertical position of the SVG, or the nearest one. */
   const boxAt = (y: number): PaneBox =>
     layout.boxes.find((box) => y <= box.top + box.height + 7) ?? layout.boxes[layout.boxes.length - 1]!;
-  const pointOf = (event: PointerEvent): { x: number; y: number } => {
+  const pointOf = (event: PointerEvent): Place => {
     const rectangle = svg.getBoundingClientRect();
     return { x: event.clientX - rectangle.left, y: event.clientY - rectangle.top };
   };
 
-  /** Reports the position of a dragged handle. */
-  function moveHandle(point: { x: number; y: number }, released: boolean): void {
-    const box = boxAt(point.y);
-    onDrag?.(box.x.toValue(point.x), box.y.toValue(point.y), released);
+  const valuesAt = (box: PaneBox, point: Place): Place => ({ x: box.x.toValue(point.x), y: box.y.toValue(point.y) });
+
+  /** Reports the position of what is dragged, in the pane in which it began. */
+  function moveGrabbed(point: Place, released: boolean): void {
+    const box = layout.boxes[taken!.pane]!;
+    frame.drag?.(valuesAt(box, point), released, taken!.from);
   }
+
+  const grabs = (point: Place, touch: boolean): boolean => frame.drag !== undefined && isGrab(layout, boxAt(point.y), point, touch);
 
   /** Shows the name of a quiet point under the pointer. */
   function showName(point: { x: number; y: number }): void {
@@ -198,20 +210,21 @@ export function createPlot(
 
   const pointers = new Map<number, { x: number; y: number }>();
   let drag: { x: number; y: number } | null = null;
-  let taken = false;
+  let taken: { pane: number; from: Place } | null = null;
 
   function hover(point: { x: number; y: number }): void {
     const box = boxAt(point.y);
     if (point.x < box.left || point.x > box.left + box.width) return moveTo(null);
     moveTo(valueAt(box, point));
     showName(point);
+    svg.classList.toggle("grabs", grabs(point, false));
   }
 
   svg.addEventListener("pointerdown", (event) => {
     const place = pointOf(event);
-    const reach = event.pointerType === "mouse" ? HANDLE_PX : TOUCH_PX;
-    if (onDrag && event.button === 0 && pointNear(boxAt(place.y), place, reach, (mark) => mark.handle === true)) {
-      taken = true;
+    if (event.button === 0 && grabs(place, event.pointerType !== "mouse")) {
+      const box = boxAt(place.y);
+      taken = { pane: layout.boxes.indexOf(box), from: valuesAt(box, place) };
       event.preventDefault();
       svg.setPointerCapture(event.pointerId);
       return;
@@ -224,7 +237,7 @@ export function createPlot(
   });
   svg.addEventListener("pointermove", (event) => {
     const point = pointOf(event);
-    if (taken) return moveHandle(point, false);
+    if (taken) return moveGrabbed(point, false);
     const before = pointers.get(event.pointerId);
     if (pointers.size === 2 && before) {
       const other = [...pointers].find(([id]) => id !== event.pointerId)![1];
@@ -241,8 +254,9 @@ export function createPlot(
   });
   const release = (event: PointerEvent): void => {
     if (taken) {
-      taken = false;
-      return moveHandle(pointOf(event), true);
+      moveGrabbed(pointOf(event), true);
+      taken = null;
+      return;
     }
     pointers.delete(event.pointerId);
     const start = drag;
@@ -262,6 +276,16 @@ export function createPlot(
   svg.addEventListener("pointerleave", (event) => {
     if (event.pointerType === "mouse" && !drag) moveTo(null);
   });
+  // A finger on a handle drags it instead of scrolling the page.
+  svg.addEventListener(
+    "touchstart",
+    (event) => {
+      const touch = event.touches[0];
+      const { left, top } = svg.getBoundingClientRect();
+      if (touch && event.touches.length === 1 && grabs({ x: touch.clientX - left, y: touch.clientY - top }, true)) event.preventDefault();
+    },
+    { passive: false },
+  );
   svg.addEventListener("dblclick", () => setView(wholeView(frame)));
 
   function drawBand(from: { x: number; y: number }, to: { x: number; y: number }, flat: boolean): void {
@@ -299,7 +323,10 @@ export function createPlot(
       "=": () => setView(zoomAbout(frame, layout, view, cursorPixel(), 1 / 1.5)),
       "-": () => setView(zoomAbout(frame, layout, view, cursorPixel(), 1.5)),
       "0": () => setView(wholeView(frame)),
-      Escape: () => setView(wholeView(frame)),
+      // Enlarged, it goes back first.
+      ...(large.isLarge() ? {} : { Escape: () => setView(wholeView(frame)) }),
+      f: large.toggle,
+      F: large.toggle,
       t: toggleTable,
       T: toggleTable,
     };
@@ -346,6 +373,7 @@ export function createPlot(
   const writeTexts = (): void => {
     say(title, frame.title);
     say(tableOf, ` of ${frame.title}`);
+    say(largeOf, ` ${frame.title}`);
     say(exportOf, ` ${frame.title}`);
     setAttribute(table, "aria-label", `Data of ${frame.title}`);
     const beside = other ? given : given.alternative;
@@ -381,6 +409,7 @@ export function createPlot(
       if (!held) draw();
     },
     dispose() {
+      large.close();
       leave();
       observer.disconnect();
     },

@@ -103,7 +103,7 @@ export function rangeResult(
     const frame = robustnessFrame(shown);
     if (first) first.update(frame);
     else {
-      first = createPlot(frame, announce, null, handles);
+      first = createPlot(frame, announce, handles);
       first.element.classList.add("tall");
       slot.replaceChildren(first.element);
     }

@@ -9,8 +9,10 @@ import type { Look } from "../plot/frame.ts";
 import { swatch } from "../plot/marks.ts";
 import { spark } from "../plot/spark.ts";
 import type { SparkScale } from "../plot/spark.ts";
+import { explained } from "./explanation.ts";
 import { comparisonRows, notesSummary, reasonOf, settles, sortRows } from "../words/comparison.ts";
 import type { ComparisonColumn, ComparisonOrder, ComparisonRow } from "../words/comparison.ts";
+import type { ExplainedName } from "../words/explained.ts";
 import { DASH } from "../words/numbers.ts";
 
 export interface ComparisonTable {
@@ -76,13 +78,13 @@ export function comparisonTable(events: ComparisonEvents): ComparisonTable {
     cue.textContent = `${below.length} more ${below.length === 1 ? "row" : "rows"} below: scroll the table.`;
   }
 
-  function heading(id: string, label: string, meaning: string, name = ""): HTMLElement {
+  function heading(id: string, label: string, meaning: string, name = "", about: ExplainedName | null = null): HTMLElement {
     const button = h(
       "button",
       { type: "button", class: "sort", title: meaning, onclick: () => events.onSort(id) },
       label,
     );
-    return h("th", { scope: "col", "data-column": id, class: name }, button);
+    return h("th", { scope: "col", "data-column": id, class: name }, button, about ? explained(about, "", `What is ${label}?`) : "");
   }
 
   const mark = (why: string): number => {
@@ -124,7 +126,7 @@ export function comparisonTable(events: ComparisonEvents): ComparisonTable {
       heading("method", "Method", "by name", "pin method-cell"),
       h("th", { scope: "col", class: "spark-head" }, "y, load step"),
       h("th", { scope: "col", class: "spark-head" }, "y, set-point step"),
-      ...columns.map((column) => heading(column.id, column.label, column.meaning)),
+      ...columns.map((column) => heading(column.id, column.label, column.meaning, "", column.about)),
       h("th", { scope: "col", class: "notes-head" }, "Notes"),
     );
     rows = new Map(list.map((row) => [row.index, makeRow(row, address)]));

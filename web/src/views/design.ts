@@ -195,7 +195,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     if (held) own.move(ownShown(job, whole, index, names[index]!, units));
     showFigures(result, listed, drawn, names, units, held);
     linearNote.hidden = !hasLinear(drawn);
-    showEntryPlots(plots, drawn, job.request, index);
+    showEntryPlots(plots, drawn, job.request, index, modified.grips());
     replay.show(whole, drawn, units);
     return drawn;
   }

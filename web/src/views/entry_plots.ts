@@ -7,21 +7,30 @@ import { responseFrame } from "../charts/responses.ts";
 import { sensitivityFrame } from "../charts/sensitivities.ts";
 import type { Frame } from "../plot/frame.ts";
 import type { PlotGrid } from "../plot/grid.ts";
+import { peakOf } from "./grips.ts";
+import type { Grips } from "./grips.ts";
 import { commonLimits } from "../words/limits.ts";
 
-/** `selected`: the entry whose linearised response is drawn as well if there are many. */
+/** `selected`: the entry whose linearised response is drawn as well if there are many, and which `grips` drag. */
 export function showEntryPlots(
   plots: PlotGrid,
   drawn: Drawn[],
   request: TuningRequest | undefined,
   selected?: number,
+  grips: Grips | null = null,
 ): void {
   const responses = drawn.some((item) => item.entry.responses);
   const frequency = drawn.some((item) => item.entry.frequency);
   const limits = commonLimits(drawn.map((item) => item.entry));
-  plots.show("setpoint", responses ? responseFrame("setpoint", drawn, request, selected) : null);
-  plots.show("load", responses ? responseFrame("load", drawn, request, selected) : null);
-  plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request) : null);
+  const held = drawn.find(({ index }) => index === selected);
+  const response = (kind: "setpoint" | "load"): Frame => {
+    const grip = held && grips?.peak(kind, request?.evaluate?.setpoint_step ?? 1);
+    return responseFrame(kind, drawn, request, selected, grip && { ...grip, at: peakOf(held.entry, kind), look: held.look });
+  };
+  const grip = held && grips?.nyquist();
+  plots.show("setpoint", responses ? response("setpoint") : null);
+  plots.show("load", responses ? response("load") : null);
+  plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request, grip && { ...grip, index: held.index }) : null);
   const curves = (): Frame => ({ ...sensitivityFrame(drawn, limits, request), alternative: bodeFrame(drawn, request) });
   plots.show("sensitivities", frequency ? curves() : null);
 }

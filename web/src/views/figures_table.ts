@@ -1,6 +1,7 @@
 // The figures, one column per entry. A figure without a number is a dash, with the reason below the table.
 import type { Entry } from "../api/types.ts";
 import { h } from "../dom.ts";
+import { explained } from "./explanation.ts";
 import type { FigureGroup } from "../words/figures.ts";
 import { DASH } from "../words/numbers.ts";
 
@@ -42,7 +43,7 @@ export function figuresTable(caption: string, columns: TableColumn[], groups: Fi
           h(
             "tr",
             {},
-            h("th", { scope: "row", title: row.meaning }, row.label),
+            h("th", { scope: "row", title: row.meaning }, explained(row.about, row.label)),
             columns.map((column) => {
               const value = column.entry.error
                 ? { text: "", why: `${column.name} has no result for this entry.` }

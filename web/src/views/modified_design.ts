@@ -19,6 +19,8 @@ import type { SettingsByHand } from "./typed_settings.ts";
 import { controlsCard } from "./cards/controls_card.ts";
 import { frontCard } from "./cards/front_card.ts";
 import type { FrontSubject } from "./cards/front_card.ts";
+import { plotGrips } from "./grips.ts";
+import type { Grips } from "./grips.ts";
 
 /** A displayed result, and the request for it. */
 export interface OnScreen {
@@ -41,6 +43,8 @@ export interface ModifiedDesign {
   answer(): Answer | null;
   /** How the displayed settings came about if they are not the job's; else "". */
   mark(): string;
+  /** How the plots are dragged; null: nothing can follow. */
+  grips(): Grips | null;
   /** The entry has sliders, hence other settings can be shown in its place. */
   isMovable(): boolean;
   /** Shows these settings, as one step. */
@@ -80,7 +84,8 @@ export function modifiedDesign(
   let kept: Point | null = null;
   const live = liveDesign(settled);
   const controls = controlsCard(live);
-  const front = frontCard(announce, controls.turnMs, () => controls.setLowest(front.lowest()));
+  const front = frontCard(announce, (Ms, released) => controls.turn("Ms", Ms, released), () => controls.setLowest(front.lowest()));
+  const grips = plotGrips(controls, () => ({ entry: live.answer.peek()?.entry ?? base(), tune: live.answer.peek()?.point.tune ?? null }));
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const waits = h("p", { class: "hint", hidden: true });
   const about = h("p", {});
@@ -213,6 +218,7 @@ export function modifiedDesign(
         const entry = answer?.entry ?? base();
         if (entry) controls.follow(entry);
         events.onAnswer(held);
+        if (held) grips.answered();
       });
     }),
     effect(() => events.onLate(live.late.value)),
@@ -306,6 +312,7 @@ export function modifiedDesign(
       return modified ? answer : { result, index, origin: [...result.controllers.keys()], request: job.request };
     },
     answer: () => live.answer.peek(),
+    grips: () => (live.point.peek() !== null && !controls.element.hidden ? grips : null),
     isMovable: () => live.point.peek() !== null && !controls.element.hidden,
     setByHand({ controller, typed }) {
       live.settle({ tune: (live.point.peek() ?? proposal!).tune, manual: controller, ...(typed ? { typed } : {}) });

@@ -1,5 +1,5 @@
 // The request for the displayed result, for programs: as JSON and as a call that can be pasted into a terminal.
-import { carry } from "../carried_request.ts";
+import { carry } from "../current_record.ts";
 import { closesItself, h } from "../dom.ts";
 import { download } from "../plot/export.ts";
 import { formatRoute } from "../routes.ts";

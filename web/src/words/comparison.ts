@@ -1,6 +1,7 @@
 // The comparison as data: its rows in order, its columns with their figures. No DOM.
 import type { Entry, Result, WhyNull } from "../api/types.ts";
 import { besideLimit } from "./figures.ts";
+import type { ExplainedName } from "./explained.ts";
 import { formatNumber, formatPercent, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
@@ -27,6 +28,8 @@ export interface ComparisonColumn {
   id: string;
   label: string;
   meaning: string;
+  /** Its longer explanation. */
+  about: ExplainedName;
   /** Among the columns that are shown at first. */
   main: boolean;
   figure(entry: Entry): ComparisonFigure;
@@ -58,17 +61,28 @@ const stable = (entry: Entry): boolean => entry.robustness?.stable === true;
 /** True if both responses settle at their targets. */
 export const settles = (entry: Entry): boolean => entry.standing?.settles ?? stable(entry);
 
+/** The explanations of columns with an id of their own. */
+const ABOUT = {
+  phase_margin: "phase_margin_deg",
+  load_IAE: "IAE",
+  load_peak: "peak",
+  load_TV: "TV",
+  setpoint_IAE: "IAE",
+  overshoot: "overshoot_percent",
+  settling: "settling_time",
+} as const satisfies Record<string, ExplainedName>;
+
 /** Every column except rank, method and notes, in their order. */
 export function comparisonColumns(units: UnitNames): ComparisonColumn[] {
   const gain = quotient(units.u, units.y);
   const error = product(units.y, units.time);
   const column = (
-    id: string,
+    id: ExplainedName | keyof typeof ABOUT,
     label: string,
     meaning: string,
     main: boolean,
     figure: (entry: Entry) => ComparisonFigure,
-  ): ComparisonColumn => ({ id, label, meaning, main, figure });
+  ): ComparisonColumn => ({ id, label, meaning, about: id in ABOUT ? ABOUT[id as keyof typeof ABOUT] : (id as ExplainedName), main, figure });
   const of = (part: (entry: Entry) => Part, name: string, absent = NOT_GIVEN, format?: (value: number) => string) => {
     return (entry: Entry): ComparisonFigure =>
       !entry.error && !stable(entry) && absent === NOT_GIVEN

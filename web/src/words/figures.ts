@@ -1,5 +1,6 @@
 // The figures of an entry, with their names and units, in display order.
 import type { Entry, Figures, WhyNull } from "../api/types.ts";
+import type { ExplainedName } from "./explained.ts";
 import { formatNumber, formatPercent, formatShare, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
@@ -7,6 +8,8 @@ export interface FigureRow {
   label: string;
   /** Explanation of the quantity for readers who do not know it. */
   meaning: string;
+  /** Its longer explanation. */
+  about: ExplainedName;
   value(entry: Entry): FigureValue;
 }
 
@@ -83,24 +86,27 @@ export function filterWords(type: string | undefined): string {
 export function figureGroups(units: UnitNames, region = false, nonlinear = false): FigureGroup[] {
   const gain = quotient(units.u, units.y);
   const error = product(units.y, units.time);
-  const controller = (label: string, name: string, meaning: string, absent: string): FigureRow => ({
+  const controller = (label: string, name: ExplainedName, meaning: string, absent: string): FigureRow => ({
     label,
     meaning,
+    about: name,
     value: (entry) => numeric(entry.controller as Figures | undefined, name, absent),
   });
-  const robustness = (label: string, name: string, meaning: string): FigureRow => ({
+  const robustness = (label: string, name: ExplainedName, meaning: string): FigureRow => ({
     label,
     meaning,
+    about: name,
     value: (entry) => numeric(entry.robustness, name, NOT_GIVEN),
   });
   const performance = (
     kind: "setpoint" | "load" | "noise",
     label: string,
-    name: string,
+    name: ExplainedName,
     meaning: string,
   ): FigureRow => ({
     label,
     meaning,
+    about: name,
     value: (entry) => numeric(entry.performance?.[kind], name, NOT_GIVEN),
   });
   return [
@@ -111,7 +117,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
         controller(withUnit("Kp", gain), "Kp", "proportional gain", NOT_GIVEN),
         controller(withUnit("Ti", units.time), "Ti", "integral time", "no integral action"),
         controller(withUnit("Td", units.time), "Td", "derivative time", "no derivative action"),
-        { label: withUnit("Tf", units.time), meaning: "filter time constant", value: (entry) => filterTime(entry) },
+        { label: withUnit("Tf", units.time), meaning: "filter time constant", about: "Tf", value: (entry) => filterTime(entry) },
         ...(nonlinear
           ? [
               controller(
@@ -148,7 +154,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       main: true,
       rows: [
         performance("setpoint", withUnit("IAE", error), "IAE", "integrated absolute error"),
-        { label: "Overshoot (%)", meaning: "of the step; in brackets the limit", value: overshoot },
+        { label: "Overshoot (%)", meaning: "of the step; in brackets the limit", about: "overshoot_percent", value: overshoot },
         performance("setpoint", withUnit("Settling", units.time), "settling_time", "last time outside 2 % of the step"),
         performance("setpoint", withUnit("TV of u", units.u), "TV", "total movement of the controller's output"),
       ],
@@ -160,6 +166,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
         {
           label: "Filter",
           meaning: "where it acts",
+          about: "filter",
           value: (entry) => ({ text: filterWords(entry.controller?.filter?.type), why: "" }),
         },
         controller("b", "b", "set-point weight of P", "1 by default"),
@@ -167,6 +174,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
         {
           label: "Action",
           meaning: "sign of the gain",
+          about: "action",
           value: (entry) => ({ text: entry.controller?.action ?? "", why: entry.controller?.action ? "" : NOT_GIVEN }),
         },
       ],
@@ -213,6 +221,7 @@ function regionRows(): FigureRow[] {
     {
       label: "Stable plants (%)",
       meaning: "of all plants: the set, the ranges or the confidence region",
+      about: "stable_fraction",
       value: ({ region }) =>
         typeof region?.stable_fraction === "number"
           ? { text: formatShare(region.stable_fraction), why: "" }
@@ -221,6 +230,7 @@ function regionRows(): FigureRow[] {
     {
       label: "Worst Ms",
       meaning: "the largest of all these plants",
+      about: "worst_Ms",
       value: ({ region }) => numeric(region, "worst_Ms", alone),
     },
   ];

@@ -10,6 +10,7 @@ import type { ManualName, SliderSpec } from "../../live/sliders.ts";
 import type { Live } from "../../live/live.ts";
 import { tiedAt } from "../../live/point.ts";
 import type { Point } from "../../live/point.ts";
+import type { MovableSlider } from "../grips.ts";
 import { missesOvershoot } from "../../words/figures.ts";
 import { formatNumber } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
@@ -20,8 +21,10 @@ export interface ControlsCard {
   show(point: Point, entry: Entry, method: Method | undefined, units: UnitNames): SliderSpec[];
   /** No design meets a limit on Ms below this. */
   setLowest(Ms: number | null): void;
-  /** Moves the limit on Ms, like its slider. */
-  turnMs(Ms: number, released: boolean): void;
+  /** The sliders of the method. */
+  movable(): MovableSlider[];
+  /** Moves the slider of an option of the method; `released`: as one step. */
+  turn(id: string, value: number, released: boolean): void;
   /** The result of the newest answer: sliders of settings that were not moved by hand follow it. */
   follow(entry: Entry): void;
   dispose(): void;
@@ -248,10 +251,20 @@ export function controlsCard(live: Live): ControlsCard {
       lowest = Ms;
       limitMs();
     },
-    turnMs(Ms, released) {
-      const item = options.find(({ spec }) => spec.id === "Ms");
+    movable: () =>
+      options.map(({ spec: { id, label, lo, hi }, slider: made }) => ({
+        id,
+        label,
+        lo: id === "Ms" ? Math.max(lo, lowest ?? lo) : lo,
+        hi,
+        value: made.value(),
+      })),
+    turn(id, to, released) {
+      const item = options.find(({ spec }) => spec.id === id);
       if (!item) return;
-      const value = Math.round(100 * Math.min(item.spec.hi, Math.max(item.spec.lo, lowest ?? 0, Ms))) / 100;
+      const { lo, hi, step, log } = item.spec;
+      const inside = Math.min(hi, Math.max(lo, id === "Ms" ? (lowest ?? lo) : lo, to));
+      const value = step && !log ? Number((Math.round(inside / step) * step).toFixed(6)) : Number(inside.toPrecision(4));
       if (released) return live.settle(modifyOption(item.spec, value));
       item.slider.set(value);
       move(item.slider, item.spec, value, modifyOption);

@@ -55,9 +55,10 @@ export function frontCard(
   function draw(): void {
     if (!subject || !here) return;
     const { entry, at, today } = here;
-    const frame = frontFrame({ ...fronts, here: { entry, at }, today, rules, load: subject.load }, subject.units);
+    const drawn = frontFrame({ ...fronts, here: { entry, at }, today, rules, load: subject.load }, subject.units);
+    const frame = { ...drawn, drag: ({ x }: { x: number }, released: boolean): void => onDrag(x, released) };
     if (plot) return plot.update(frame);
-    plot = createPlot(frame, announce, (x, _y, released) => onDrag(x, released));
+    plot = createPlot(frame, announce);
     element.append(plot.element);
     plot.element.append(rulesButton);
   }

@@ -6,6 +6,7 @@ import { factsOf } from "../../words/facts.ts";
 import type { Fact } from "../../words/facts.ts";
 import { withMinus } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
+import { explained } from "../explanation.ts";
 import { timeUnitDoubt } from "../../words/quality.ts";
 
 /** The classes of the levels; a note looks like ordinary text. */
@@ -50,8 +51,8 @@ export function showVerdict(
   if (doubt) card.append(h("p", { class: "trouble" }, `${doubt} `, h("a", { href: recordAddress }, "Choose the unit")));
 }
 
-const factElement = ({ label, value, beside }: Fact): HTMLElement =>
-  h("div", {}, h("dt", {}, label), h("dd", {}, value, beside ? h("small", {}, ` ${beside}`) : ""));
+const factElement = ({ label, about, value, beside }: Fact): HTMLElement =>
+  h("div", {}, h("dt", {}, explained(about, label)), h("dd", {}, value, beside ? h("small", {}, ` ${beside}`) : ""));
 
 /** The headings for kinds of failures. */
 function failedHead(job: Job): string {

@@ -1,0 +1,104 @@
+// The Nyquist curve and the peak of a response are dragged: the slider of the method follows, with its undo. Plots are
+// enlarged over the window, and back.
+import assert from "node:assert/strict";
+import test from "node:test";
+import { openDesign, PLANT, slider } from "../../design_page.mjs";
+import { accessibilityViolations, browserTests, overflow, WINDOWS } from "../../harness.mjs";
+
+const tests = browserTests();
+const { withPage } = tests;
+
+const plot = (page, title) => page.locator("section.plot").filter({ has: page.getByRole("heading", { name: title, exact: true }) });
+const msNow = async (page) => Number(/[\d.]+/.exec(await slider(page, "Robustness Ms").getAttribute("aria-valuetext"))[0]);
+
+/** The centre of a plot's handle, on the screen. */
+async function handleOf(page, title) {
+  const circle = plot(page, title).locator('svg.canvas circle[r="7"]');
+  await circle.scrollIntoViewIfNeeded();
+  const box = await circle.boundingBox();
+  return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+}
+
+async function dragBy(page, from, dx, dy) {
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  for (let step = 1; step <= 8; step += 1) await page.mouse.move(from.x + (dx * step) / 8, from.y + (dy * step) / 8);
+  await page.waitForTimeout(500);
+  await page.mouse.move(from.x + dx, from.y + dy);
+  await page.mouse.up();
+}
+
+test("the Nyquist curve dragged toward −1 raises Ms as a step of its slider; undo goes back", async () => {
+  await withPage(PLANT, { height: 1400 }, async (page) => {
+    await openDesign(page);
+    const before = await msNow(page);
+    const handle = await handleOf(page, "Nyquist curve of L");
+    const minus = plot(page, "Nyquist curve of L").getByText("−1", { exact: true }).last();
+    await minus.waitFor({ state: "attached" });
+    // The distance of the handle from −1 is 1/Ms: halfway there is twice Ms, more than the slider allows.
+    await dragBy(page, handle, -14, 8);
+    const after = await msNow(page);
+    assert.ok(after > before + 0.05, `${before} -> ${after}`);
+    await page.waitForURL(/[?&]Ms=/);
+    await page.keyboard.press("Control+z");
+    await page.waitForFunction(() => !/[?&]Ms=/.test(location.hash));
+    assert.equal(await msNow(page), before);
+    const other = await handleOf(page, "Nyquist curve of L");
+    await dragBy(page, other, 12, -8);
+    assert.ok((await msNow(page)) < before, "away from −1 Ms falls");
+  });
+});
+
+for (const [title, dy, moved] of [
+  ["Set-point step", -9, /overshoot=/],
+  ["Load step at the plant input", -9, /[?&]Ms=/],
+])
+  test(`the peak of the ${title} is dragged, and the slider of the method follows, as one step`, async () => {
+    await withPage(PLANT, { height: 1400 }, async (page) => {
+      await openDesign(page);
+      await dragBy(page, await handleOf(page, title), 0, dy);
+      await page.waitForURL(moved);
+      await page.keyboard.press("Control+z");
+      await page.waitForFunction(() => !location.hash.includes("?"));
+    });
+  });
+
+test("elsewhere on the plot a drag still zooms, and a fixed rule has no handle", async () => {
+  await withPage(PLANT, { height: 1400 }, async (page) => {
+    await page.getByText(/^Compare with/).click();
+    await openDesign(page);
+    const box = await plot(page, "Nyquist curve of L").locator("svg.canvas").boundingBox();
+    await page.mouse.move(box.x + 90, box.y + 30);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 140, box.y + 60, { steps: 4 });
+    await page.mouse.up();
+    await plot(page, "Nyquist curve of L").getByRole("button", { name: "Show all" }).waitFor();
+  });
+});
+
+for (const [window, options] of WINDOWS)
+  test(`a plot is enlarged by its button or F, keeps its zoom, and Escape goes back: ${window}`, async () => {
+    await withPage(PLANT, options, async (page) => {
+      await openDesign(page);
+      const nyquist = plot(page, "Nyquist curve of L");
+      const canvas = nyquist.locator("svg.canvas");
+      await canvas.focus();
+      await page.keyboard.press("+");
+      await nyquist.getByRole("button", { name: "Show all" }).waitFor();
+      const small = await canvas.boundingBox();
+      await page.keyboard.press("f");
+      const dialog = page.getByRole("dialog", { name: "Nyquist curve of L" });
+      await dialog.waitFor();
+      await page.waitForFunction((height) => document.querySelector("dialog.enlarged svg.canvas").getBoundingClientRect().height > height, small.height * 1.2);
+      assert.equal(await nyquist.getByRole("button", { name: "Show all" }).count(), 1);
+      assert.equal(await overflow(page), 0);
+      assert.deepEqual(await accessibilityViolations(page), []);
+      await page.keyboard.press("Escape");
+      await dialog.waitFor({ state: "hidden" });
+      assert.equal(await page.evaluate(() => document.activeElement.classList.contains("canvas")), true);
+      await nyquist.getByRole("button", { name: /^Enlarge/ }).click();
+      await dialog.waitFor();
+      await dialog.getByRole("button", { name: "Close" }).click();
+      await dialog.waitFor({ state: "hidden" });
+    });
+  });

@@ -1,0 +1,56 @@
+// What each figure means: two sentences, a picture where one helps, and the document that says more.
+
+export type PictureName = "distance" | "margins" | "area" | "step" | "travel" | "weight" | "load" | "samples";
+
+export interface Explanation {
+  title: string;
+  text: string;
+  picture?: PictureName;
+  /** A document and its section, as in documentAddress. */
+  more: readonly [id: string, anchor: string];
+}
+
+const LOOP = ["symbols", "loop"] as const;
+const PERFORMANCE = ["symbols", "performance"] as const;
+const CONTROLLER = ["symbols", "controller-c"] as const;
+const TERMS = ["glossary", "design-and-evaluation"] as const;
+
+/** By the figure's name in the contract. */
+export const EXPLANATIONS = {
+  Ms: { title: "Ms, the peak of |S|", text: "1/Ms is the shortest distance of the Nyquist curve from −1, the point where the loop would oscillate. A loop with 1.4 is calm, with 2 sharp; the larger Ms, the less the plant may differ from its model.", picture: "distance", more: LOOP },
+  Mt: { title: "Mt, the peak of |T|", text: "The largest amplification from the set point to the measurement at any frequency. Above 1.3 the response to the set point usually overshoots, unless the set-point weight b is small.", picture: "distance", more: LOOP },
+  Mks: { title: "Mks, the noise gain", text: "The largest amplification from noise on the measurement to the controller output. A longer filter time Tf or less derivative action lowers it, and spares the actuator.", more: LOOP },
+  worst_Ms: { title: "Worst Ms", text: "The largest Ms of all plants that the request names or that fit the record. It says how the loop behaves if the plant is not quite its model.", picture: "distance", more: ["uncertain", ""] },
+  stable_fraction: { title: "Stable plants", text: "The share of the plants in the set, the ranges or the confidence region with which the loop is stable. Below 100 % the settings should not be used.", more: ["uncertain", ""] },
+  gain_margin: { title: "Gain margin", text: "The factor by which the gain of plant or controller may grow before the loop oscillates. On the Nyquist curve: the inverse of the distance from 0 at which it crosses the negative axis.", picture: "margins", more: LOOP },
+  gain_margin_low: { title: "Gain margin, low", text: "The fraction to which the loop gain may fall before the loop becomes unstable. Only plants that are unstable by themselves, or with two integrators, have one.", picture: "margins", more: LOOP },
+  phase_margin_deg: { title: "Phase margin", text: "The extra phase lag at which the loop would oscillate: the angle between −1 and the Nyquist curve where |L| is 1. 45° to 60° is usual; Ms says more, because the curve may come closer to −1 elsewhere.", picture: "margins", more: LOOP },
+  delay_margin: { title: "Delay margin", text: "The extra dead time at which the loop would oscillate, in the loop's unit of time. Half of a sample time of the controller counts as extra dead time.", picture: "margins", more: LOOP },
+  omega_Ms: { title: "ω of Ms", text: "The frequency at which the Nyquist curve is closest to −1. A disturbance with this frequency is amplified most, by Ms.", picture: "distance", more: LOOP },
+  omega_Mt: { title: "ω of Mt", text: "The frequency at which |T| peaks. If the loop rings after a set-point step, it rings near this frequency.", more: LOOP },
+  gain_crossover: { title: "Gain crossover", text: "The frequency at which |L| is 1; below it the loop acts, above it hardly. Its inverse is roughly the time in which the loop reacts.", picture: "margins", more: LOOP },
+  phase_crossover: { title: "Phase crossover", text: "The frequency at which the phase of L is −180°. The gain margin is read here.", picture: "margins", more: LOOP },
+  IAE: { title: "IAE, integrated absolute error", text: "The area between the measurement and its target after a step: large, long and oscillating errors all count. Half the IAE means half the product out of specification, if the loss grows with the deviation.", picture: "area", more: PERFORMANCE },
+  ISE: { title: "ISE, integrated squared error", text: "The area under the squared error after a step. Large errors count more than with the IAE, long small ones less.", picture: "area", more: PERFORMANCE },
+  ITAE: { title: "ITAE, integrated time-weighted error", text: "The area under the error times the time since the step. Errors that last count more than those at the beginning, which no controller can avoid.", picture: "area", more: PERFORMANCE },
+  excess: { title: "Over the optimum", text: "How far the load IAE lies above the least that any PID reaches on this plant with the same Ms. 0 means that nothing better exists at this robustness.", picture: "area", more: TERMS },
+  peak: { title: "Peak after a load step", text: "The largest deviation of the measurement after a step of the load, with its sign. The part before the dead time has passed is the same with every controller.", picture: "load", more: PERFORMANCE },
+  overshoot_percent: { title: "Overshoot", text: "How far the measurement passes a new set point, in percent of the step. A smaller set-point weight b lowers it without making the loop slower against disturbances.", picture: "step", more: PERFORMANCE },
+  settling_time: { title: "Settling time", text: "The last time at which the measurement is more than 2 % of the step away from the new set point. A single slow tail lengthens it much.", picture: "step", more: PERFORMANCE },
+  recovery_time: { title: "Recovery time", text: "The last time after a load step at which the deviation is more than 2 % of its peak. It is mostly set by the integral time Ti.", picture: "load", more: PERFORMANCE },
+  rise_time: { title: "Rise time", text: "The time from 10 % to 90 % of a set-point step. Faster rises need more movement of the actuator and more overshoot.", picture: "step", more: PERFORMANCE },
+  TV: { title: "TV, total variation of u", text: "All movements of the controller output after a step, up and down, added. It is a measure of the wear of a valve: twice the TV is twice the travel.", picture: "travel", more: PERFORMANCE },
+  first_move: { title: "First move of u", text: "The jump of the controller output right after a set-point step: Kp times b times the step. It is limited by the range of the actuator.", picture: "travel", more: PERFORMANCE },
+  Kp: { title: "Kp, proportional gain", text: "The controller output changes by Kp for each unit of error, at once. Some products take its inverse as a proportional band, in percent of ranges.", more: CONTROLLER },
+  Ti: { title: "Ti, integral time", text: "With a constant error the integral part repeats the proportional one every Ti. The shorter Ti, the faster an error is removed, and the closer the loop is to oscillation.", more: CONTROLLER },
+  Td: { title: "Td, derivative time", text: "The controller acts on where the error would be Td later if it went on as now. It allows a higher gain on slow plants, and amplifies noise unless it is filtered.", more: CONTROLLER },
+  Tf: { title: "Tf, filter time constant", text: "Faster changes of the measurement than Tf are smoothed before the controller acts on them. It lowers the noise gain Mks and takes some phase margin, which the design counts.", more: CONTROLLER },
+  filter: { title: "Filter", text: "Where the filter acts: on the derivative part alone, or on the measurement as a whole. On the measurement it also smooths what the proportional part sees.", more: CONTROLLER },
+  b: { title: "b, set-point weight", text: "The part of a set-point change that the proportional action sees at once; the integral takes the rest. With b near 0 set-point changes are smooth, with 1 fast, and disturbances are handled the same.", picture: "weight", more: CONTROLLER },
+  c: { title: "c, set-point weight of the derivative", text: "The part of a set-point change that the derivative action sees. It is almost always 0: a step would make the output jump.", picture: "weight", more: CONTROLLER },
+  delta_r: { title: "delta_r", text: "Errors much larger than this hardly enter the integral of the nonlinear controller. It avoids the overshoot after large set-point changes.", more: CONTROLLER },
+  action: { title: "Direction of action", text: "Reverse: the output falls when the measurement rises, as for heating. Direct: it rises with it, as for cooling or a drain.", more: ["glossary", "loop-and-controller"] },
+  longest_sample_time: { title: "Longest sample time", text: "The longest time between two computations of the controller with which the loop keeps its robustness, because half of it acts as dead time. A program that is called less often needs settings that were designed for that.", picture: "samples", more: ["numerics", "controllers-that-sample"] },
+} as const satisfies Record<string, Explanation>;
+
+export type ExplainedName = keyof typeof EXPLANATIONS;

@@ -123,12 +123,18 @@ TEST(Report, DatesAreInTheReadersTime) {
         EXPECT_EQ(date_words(other, 60), other);
 }
 
+ReportWords words_named(const std::string& name) {
+    ReportWords words;
+    words.name = name;
+    return words;
+}
+
 TEST(Report, SheetsOfABatchKeepItsOrderAndListTheLoopsWithoutOne) {
     const std::string result = R"({"controllers": [)" + std::string(kNewEntry) + "," + kTodaysEntry + "]}";
     const std::string todays = R"({"controllers": [)" + std::string(kTodaysEntry) + "]}";
     ChangeSheets sheets;
-    sheets.add({0, "succeeded", {result}, "", {.name = "A"}});
-    sheets.add({1, "failed", {""}, R"({"detail": "T is missing."})", {.name = "B <b>"}});
+    sheets.add({0, "succeeded", {result}, "", words_named("A")});
+    sheets.add({1, "failed", {""}, R"({"detail": "T is missing."})", words_named("B <b>")});
     sheets.add({2, "succeeded", {result}, "", {}});
     sheets.add({3, "cancelled", {""}, "", {}});
     sheets.add({4, "running", {""}, "", {}});

@@ -153,7 +153,7 @@ TEST(RangeJob, HasAReportWithItsSettingsRunsAndRequest) {
     const JobOutcome outcome = run_job(prepared, {});
     const Json range = Json::parse(outcome.result_json)["range"];
     const auto report = report_html({outcome.result_json, prepared.request_json}, "",
-                                    {.job = "", .name = "cone", .date = "", .origin = ""});
+                                    {.job = "", .name = "cone", .date = "", .origin = "", .utc_offset_min = {}});
     ASSERT_TRUE(std::holds_alternative<std::string>(report));
     const std::string& page = std::get<std::string>(report);
     EXPECT_THAT(page, HasSubstr("cone: tuning report"));

@@ -166,7 +166,7 @@ TEST(SampledCourse, AgreesWithTheProgramCalledStepByStep) {
         const LinearPlant plant = plant_of(c.plant);
         const SampledPid law{.gains = c.gains, .Ts = 0.25};
         const ProgramLimits limits{.output = c.limits};
-        const StepResponse response = simulate_course(plant, law, limits, c.course, {.tail = {}, .horizon = c.horizon});
+        const StepResponse response = simulate_course(plant, law, limits, c.course, {.horizon = c.horizon});
         PidProgram program(law, limits);
         const PlainInputs in = plain(c.course);
         constexpr double dt = 5e-4;
@@ -205,9 +205,8 @@ TEST(SampledCourse, ApproachesTheContinuousLoopAsTheSampleTimeFalls) {
     const StepResponse continuous = simulate_course(plant, c.gains, c.course, wide, {.tail = {}, .horizon = c.horizon});
     double before = kNone;
     for (const double Ts : {0.4, 0.1, 0.025}) {
-        const StepResponse with_samples =
-            simulate_course(plant, SampledPid{.gains = c.gains, .Ts = Ts}, {.output = wide}, c.course,
-                            {.tail = {}, .horizon = c.horizon});
+        const StepResponse with_samples = simulate_course(plant, SampledPid{.gains = c.gains, .Ts = Ts},
+                                                          {.output = wide}, c.course, {.horizon = c.horizon});
         double worst = 0;
         for (int i = 1; i <= 200; ++i)
             worst = std::max(

@@ -342,6 +342,7 @@ export type components = {
       points?: number;
       actuator?: components["schemas"]["Actuator"];
       noise?: components["schemas"]["Noise"];
+      own_step?: components["schemas"]["OwnStep"];
       tradeoff?: boolean;
       rank_limits?: {
         Ms?: number;
@@ -355,6 +356,23 @@ export type components = {
     Noise: {
       std?: number;
       sample_time?: number;
+    };
+    OwnStep: {
+      y?: number;
+      u?: number;
+      target: number;
+      u_min?: number;
+      u_max?: number;
+      ramp_rate?: number;
+      hold?: number;
+      load?: components["schemas"]["OwnLoad"];
+      length?: number;
+    };
+    OwnLoad: {
+      size: number;
+      at?: "input" | "output";
+      shape?: "step" | "pulse" | "ramp";
+      duration?: number;
     };
     Notify: {
       url: string;
@@ -587,6 +605,7 @@ export type components = {
       rimc?: components["schemas"]["Rimc"];
       optimum_at_Ms?: components["schemas"]["OptimumAtMs"];
       replay?: components["schemas"]["ReplayedEntry"];
+      own_step?: components["schemas"]["OwnStepEntry"];
       standing?: components["schemas"]["Standing"];
       tradeoff?: components["schemas"]["Tradeoff"];
       emulation?: components["schemas"]["Emulation"];
@@ -738,6 +757,7 @@ export type components = {
       };
     };
     SettingsAnswer: {
+      product: string;
       settings: {
         [key: string]: number | string | boolean;
       };
@@ -753,7 +773,6 @@ export type components = {
       standard_errors?: {
         [key: string]: number | null;
       };
-      product: string;
     };
     Snippet: {
       name: string;
@@ -847,6 +866,50 @@ export type components = {
       travel_ratio?: number;
       y?: (number | null)[];
       u?: (number | null)[];
+    };
+    OwnStepEntry: {
+      refused?: {
+        code: "no-time" | "equations" | "no-law" | "unstable" | "impulse";
+        text: string;
+      };
+      setpoint?: components["schemas"]["OwnSetpointFigures"];
+      load?: components["schemas"]["OwnLoadFigures"];
+      u_min?: number;
+      u_max?: number;
+      travel?: number;
+      time_at_min?: number | null;
+      time_at_max?: number | null;
+      u_needed?: number | null;
+      y_final?: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+      settles?: boolean;
+      trace?: components["schemas"]["OwnStepTrace"];
+    };
+    OwnSetpointFigures: {
+      IAE: number | null;
+      overshoot: number | null;
+      overshoot_percent: number | null;
+      settling_time: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    OwnLoadFigures: {
+      start: number;
+      IAE: number | null;
+      peak: number | null;
+      recovery_time: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    OwnStepTrace: {
+      t: number[];
+      r: (number | null)[];
+      y: (number | null)[];
+      u: (number | null)[];
     };
     Standing: {
       group: "holds" | "above_limit" | "not_settled" | "unstable";
@@ -1485,6 +1548,8 @@ export type Implement = components['schemas']['Implement'];
 export type Evaluate = components['schemas']['Evaluate'];
 export type Actuator = components['schemas']['Actuator'];
 export type Noise = components['schemas']['Noise'];
+export type OwnStep = components['schemas']['OwnStep'];
+export type OwnLoad = components['schemas']['OwnLoad'];
 export type Notify = components['schemas']['Notify'];
 export type TuningResult = components['schemas']['TuningResult'];
 export type Model = components['schemas']['Model'];
@@ -1536,6 +1601,10 @@ export type FullController = components['schemas']['FullController'];
 export type DisturbancePeakCurve = components['schemas']['DisturbancePeakCurve'];
 export type OptimumAtMs = components['schemas']['OptimumAtMs'];
 export type ReplayedEntry = components['schemas']['ReplayedEntry'];
+export type OwnStepEntry = components['schemas']['OwnStepEntry'];
+export type OwnSetpointFigures = components['schemas']['OwnSetpointFigures'];
+export type OwnLoadFigures = components['schemas']['OwnLoadFigures'];
+export type OwnStepTrace = components['schemas']['OwnStepTrace'];
 export type Standing = components['schemas']['Standing'];
 export type Tradeoff = components['schemas']['Tradeoff'];
 export type TradeoffFigures = components['schemas']['TradeoffFigures'];

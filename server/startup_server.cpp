@@ -92,9 +92,8 @@ std::unique_ptr<JobStore> open_behind_startup_server(const Config& config, const
     });
     if (store.wait_for(kQuietOpenTime) == std::future_status::ready) return store.get();
     const StartupServer desk(config.listen, config);
-    const auto probes = config.metrics_listen.empty()
-                            ? nullptr
-                            : std::make_unique<StartupServer>(config.metrics_listen, config);
+    const auto probes =
+        config.metrics_listen.empty() ? nullptr : std::make_unique<StartupServer>(config.metrics_listen, config);
     const timespec look{0, std::chrono::nanoseconds(kSignalPollInterval).count()};
     while (store.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
         if (sigtimedwait(&signals, nullptr, &look) > 0) {

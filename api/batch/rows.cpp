@@ -47,10 +47,9 @@ void add_text(const Json& value, const char* pointer, CsvWriter& out) {
 }
 
 /// Columns that were added later stand at the end, so that the earlier ones keep their positions.
-constexpr std::array kLater = {"time_unit",        "filter",         "setpoint_filter_T",
-                               "settings_to_type", "today_load_IAE", "gain_over_today_percent",
-                               "worst_Ms",         "today_settings", "today_Ms",
-                               "u_unit",           "y_unit"};
+constexpr std::array kLater = {
+    "time_unit", "filter",         "setpoint_filter_T", "settings_to_type", "today_load_IAE", "gain_over_today_percent",
+    "worst_Ms",  "today_settings", "today_Ms",          "u_unit",           "y_unit"};
 
 /// The settings for the user's own controller as text, "GAIN 2.328 %/%; RESET 93.12 s"; "" without a product.
 std::string to_type(const Json& entry) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/evaluation/two_digits.h"
 #include "engine/loop/noise.h"
 #include "engine/simulation/linear/indices.h"
 
@@ -98,6 +97,12 @@ NoisePerformance noise_figures(const Loop& loop, const NoiseOptions& noise) {
         noise_gain(loop, noise.sample_time > 0 ? noise.sample_time : default_noise_sample_time(loop)),
         "The derivative has no filter: held noise samples make it infinite. Give the controller a filter.");
     return {.u_std = gain ? Figure(*gain * noise.std) : gain, .gain = gain};
+}
+
+double two_digits_up(double value) {
+    if (!(value > 0)) return 0;
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+    return std::ceil(value / unit) * unit;
 }
 
 double covering_horizon(const StepResponse& setpoint, const StepResponse& load) {

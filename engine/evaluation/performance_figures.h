@@ -38,6 +38,9 @@ const char* why_no_integral(const StepResponse& response, double target, bool to
 /// A performance with every figure empty, for one reason.
 Performance no_performance(const std::string& reason);
 
+/// The next number at or above a value > 0 that has two significant digits; 0 for other values.
+double two_digits_up(double value);
+
 /// Long enough for both responses to stay within 1 % of their largest deviation, and a little more; two significant
 /// digits.
 double covering_horizon(const StepResponse& setpoint, const StepResponse& load);

@@ -130,7 +130,8 @@ TEST(ResultRows, AsCsvHoldUnitsAndWhatIsToBeTyped) {
     EXPECT_NEAR(std::stod(under("gain_over_today_percent", lines[0])), 100 * (1 - load(0) / load(1)), 1e-9);
     EXPECT_EQ(under("gain_over_today_percent", lines[1]), "") << "today's own line";
     const Json& before = value["controllers"][1]["as_entered"]["as_typed"];
-    EXPECT_THAT(under("today_settings", lines[0]), HasSubstr("GAIN " + before["GAIN"].get<std::string>() + " %/%; RESET"));
+    EXPECT_THAT(under("today_settings", lines[0]),
+                HasSubstr("GAIN " + before["GAIN"].get<std::string>() + " %/%; RESET"));
     const auto Ms = [&](int entry) -> double { return value["controllers"][entry]["implemented"]["robustness"]["Ms"]; };
     EXPECT_EQ(std::stod(under("worst_Ms", lines[0])), Ms(0));
     EXPECT_EQ(std::stod(under("today_Ms", lines[0])), Ms(1));

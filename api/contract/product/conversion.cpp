@@ -134,8 +134,7 @@ const Description<SettingsAnswer>& settings_answer_contract() {
                 [](const Answer& a, Writer& out) { controller_contract().write(Controller(a.realised), out); },
                 controller_schema,
                 "The controller that the product then represents, with weights and filter; after rounding.")
-            .field("notes", &Answer::notes, notes(),
-                   "Deviations from the controller, and facts that are not verified.")
+            .field("notes", &Answer::notes, notes(), "Deviations from the controller, and facts that are not verified.")
             .field(
                 "standard_errors", &Answer::standard_errors,
                 unless<std::map<std::string, double>>(numbers_by_name("The parameter's name."),

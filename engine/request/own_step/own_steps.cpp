@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "engine/evaluation/performance_figures.h"
-#include "engine/evaluation/two_digits.h"
 #include "engine/simulation/course/course.h"
 #include "engine/simulation/linear/indices.h"
 

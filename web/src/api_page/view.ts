@@ -5,9 +5,8 @@ import { formatRoute } from "../routes.ts";
 import type { View } from "../views/start.ts";
 import { documentAddress } from "../words/documents.ts";
 import { carriedRequest } from "../current_record.ts";
-import { fieldTree } from "./field_tree.ts";
-import { callsOf } from "./openapi.ts";
-import type { ApiDocument, Call } from "./openapi.ts";
+import { asText, callsOf, fieldsOf, resolved, typeWords } from "./openapi.ts";
+import type { ApiDocument, ApiField, ApiSchema, Call } from "./openapi.ts";
 import { tryCard } from "./try_card.ts";
 
 const FIRST_CALL = "createJob";
@@ -108,4 +107,29 @@ export function apiView(id: string, announce: (sentence: string) => void): View 
 
   void read();
   return { element, heading, dispose: () => undefined };
+}
+
+// The fields of a request or an answer as a tree. A branch is made when it is unfolded: the whole would be endless.
+
+/** Null: there are no fields. */
+function fieldTree(document: ApiDocument, schema: ApiSchema): HTMLElement | null {
+  const fields = fieldsOf(document, schema);
+  return fields.length === 0 ? null : h("ul", { class: "fields-tree" }, fields.map((field) => h("li", {}, fieldElement(document, field))));
+}
+
+function fieldElement(document: ApiDocument, { name, schema, required }: ApiField): HTMLElement {
+  const { description, default: usual } = resolved(document, schema);
+  const line = [
+    h("code", {}, name),
+    h("span", { class: "type" }, ` ${typeWords(document, schema)}`),
+    required ? h("strong", {}, " required") : "",
+  ];
+  const about = [
+    description ? h("p", {}, description) : "",
+    usual === undefined ? "" : h("p", { class: "hint" }, `Default: ${asText(usual)}`),
+  ];
+  if (fieldsOf(document, schema).length === 0) return h("div", {}, h("p", {}, line), about);
+  const fold = h("details", {}, h("summary", {}, line), about);
+  fold.addEventListener("toggle", () => fold.append(fieldTree(document, schema)!), { once: true });
+  return fold;
 }

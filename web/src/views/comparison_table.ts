@@ -9,7 +9,7 @@ import type { Look } from "../plot/frame.ts";
 import { swatch } from "../plot/marks.ts";
 import { spark } from "../plot/spark.ts";
 import type { SparkScale } from "../plot/spark.ts";
-import { explained } from "./explanation.ts";
+import { explained } from "../reach/explanation.ts";
 import { comparisonRows, notesSummary, reasonOf, settles, sortRows } from "../words/comparison.ts";
 import type { ComparisonColumn, ComparisonOrder, ComparisonRow } from "../words/comparison.ts";
 import type { ExplainedName } from "../words/explained.ts";

@@ -1,7 +1,7 @@
 // The figures, one column per entry. A figure without a number is a dash, with the reason below the table.
 import type { Entry } from "../api/types.ts";
 import { h } from "../dom.ts";
-import { explained } from "./explanation.ts";
+import { explained } from "../reach/explanation.ts";
 import type { FigureGroup } from "../words/figures.ts";
 import { DASH } from "../words/numbers.ts";
 

@@ -6,7 +6,7 @@ import { factsOf } from "../../words/facts.ts";
 import type { Fact } from "../../words/facts.ts";
 import { withMinus } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
-import { explained } from "../explanation.ts";
+import { explained } from "../../reach/explanation.ts";
 import { timeUnitDoubt } from "../../words/quality.ts";
 
 /** The classes of the levels; a note looks like ordinary text. */

@@ -110,7 +110,7 @@ export function screens(
       shown.restore(texts);
       const { test } = store.get();
       if (texts.kind === "record" && test) shown.loadRecord(test.record, test.identify);
-    }
+    } else keepStart();
     return true;
   }
 

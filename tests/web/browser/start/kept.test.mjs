@@ -146,7 +146,8 @@ test("Identify keeps the record, the controller and the choice of today's settin
     await FIELDS.Ms(page).fill("1,50");
     await dropFile(page, ".drop", "trend.csv", loopUnderPI());
     const take = today(page).getByRole("checkbox", { name: "Use as today's settings" });
-    await take.waitFor();
+    await today(page).getByText(/^From the record: /).waitFor({ timeout: 120_000 });
+    assert.equal(await take.isChecked(), true, "settings that are certain are taken");
     await take.setChecked(false);
     await page.reload();
     await take.waitFor();

@@ -291,15 +291,15 @@ TEST(BatchReader, EachLoopMayHaveItsOwnController) {
     ASSERT_FALSE(out.problem) << out.problem->detail;
     ASSERT_EQ(out.entries.size(), 3U);
     EXPECT_EQ(request_of(out.entries[0])["implement"],
-              Json::parse(R"({"product": "siemens_fb41_cont_c", "sample_time": 0.01, "y_span": [0, 200],
-                              "u_span": [0, 100]})"));
+              Json::parse(R"({"product": "siemens_fb41_cont_c", "u_span": [0, 100], "sample_time": 0.01,
+                              "y_span": [0, 200]})"));
     EXPECT_EQ(request_of(out.entries[1])["implement"], Json::parse(R"({"product": "klipper", "u_span": [0, 1]})"));
     EXPECT_EQ(request_of(out.entries[2])["implement"]["sample_time"], 0.5);
     for (const BatchEntry& entry : out.entries) EXPECT_FALSE(request_of(entry).contains("baseline"));
     // Today's settings by their form stay so where all loops have one product.
     const Outcome by_form = read(loops({{"implement/product", "klipper"}, {"implement/u_span", "[0, 1]"}}),
                                  "K,T,L,Kp,Ti\n2,100,30,0.5,90\n");
-    EXPECT_EQ(request_of(by_form.entries[0])["baseline"], Json::parse(R"({"form": "ideal", "Kp": 0.5, "Ti": 90})"));
+    EXPECT_EQ(request_of(by_form.entries[0])["baseline"], Json::parse(R"({"Kp": 0.5, "Ti": 90, "form": "ideal"})"));
     EXPECT_THAT(refusal(loops(), "K,T,L,y low,y high\n1,2,3,0,200\n"), HasSubstr("Add a column product"));
     EXPECT_THAT(refusal(loops(), "K,T [min],L,sample time [s]\n1,2,3,1\n"), HasSubstr("sample time in \"s\""));
     const Outcome wrong = read(loops(), "K,T,L,sample time\n2,100,30,often\n");

@@ -138,9 +138,11 @@ TEST(ResultRows, AsCsvHoldUnitsAndWhatIsToBeTyped) {
 }
 
 TEST(ResultRows, AsCsvHoldTheRiskOverAllPlants) {
-    const std::string result = result_of(
-        R"("plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3, "uncertainty": {"K": [0.7, 1.4]}},
-           "tune": [{"method": "simc"}], "evaluate": {"points": 0}, "baseline": {"form": "ideal", "Kp": 0.5, "Ti": 12})");
+    const std::string request =
+        R"({"plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3, "uncertainty": {"K": [0.7, 1.4]}},
+            "tune": [{"method": "simc"}], "evaluate": {"points": 0},
+            "baseline": {"form": "ideal", "Kp": 0.5, "Ti": 12}})";
+    const std::string result = run_job(StoredRequest{request, {}}, {}).result_json;
     const Json value = Json::parse(result);
     std::string out;
     append_csv({0, "id", "", "succeeded", result, ""}, out);

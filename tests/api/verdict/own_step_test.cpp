@@ -178,9 +178,9 @@ TEST(OwnStep, IsRefusedWithItsReason) {
     EXPECT_EQ(code(request), "");
     request = heater_request(heater_step());
     request["plant"] = {{"type", "frequency_response"},
-                        {"omega", {0.001, 0.003, 0.01, 0.03, 0.1}},
-                        {"re", {1.9, 1.7, 0.9, 0.1, -0.1}},
-                        {"im", {-0.2, -0.6, -1.0, -0.6, -0.1}}};
+                        {"omega", {0.001, 0.002, 0.003, 0.006, 0.01, 0.02, 0.03, 0.1}},
+                        {"re", {1.9, 1.8, 1.7, 1.3, 0.9, 0.4, 0.1, -0.1}},
+                        {"im", {-0.2, -0.4, -0.6, -0.9, -1.0, -0.8, -0.6, -0.1}}};
     EXPECT_EQ(code(request), "no-time");
 }
 

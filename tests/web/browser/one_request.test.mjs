@@ -211,21 +211,25 @@ test("the record of a loop is drawn again with the new settings, and its figures
     const { result } = await jobOf(page);
     const [entry] = result.controllers;
     assert.ok(!result.replay.refused && !entry.replay.refused, JSON.stringify([result.replay.refused, entry.replay?.refused]));
-    // y and u of the record and of the entry, and the set point.
-    await tracesShown(page, "Record and replay", 5);
+    // The record shows today's settings too: y and u of the record, of the entry and with today's settings, and the set point.
+    assert.equal(result.controllers[1].method, "baseline");
+    await tracesShown(page, "Record and replay", 7);
     const rows = await replayCard(page).locator("tbody tr").allInnerTexts();
     const shown = (value) => (value < 1000 ? value.toPrecision(3) : String(Number(value.toPrecision(3))));
     const { IAE_ratio, IAE_ratio_low, IAE_ratio_high, figures } = entry.replay;
-    assert.ok(rows[0].endsWith(`${shown(IAE_ratio)} (${shown(IAE_ratio_low)} to ${shown(IAE_ratio_high)})`), rows[0]);
-    assert.ok(rows[1].includes(shown(result.replay.figures.IAE)) && rows[1].endsWith(shown(figures.IAE)), rows[1]);
+    const cells = rows.map((row) => row.split("\t"));
+    assert.equal(cells[0][2], `${shown(IAE_ratio)} (${shown(IAE_ratio_low)} to ${shown(IAE_ratio_high)})`);
+    assert.ok(cells[1][1].startsWith(shown(result.replay.figures.IAE)) && cells[1][2] === shown(figures.IAE), rows[1]);
+    const { replay: today } = result.controllers[1];
+    assert.ok(today.IAE_ratio_low <= 1 && 1 <= today.IAE_ratio_high, "with today's settings the hour is the record");
     const finding = entry.verdict.find(({ code }) => code === "replay");
     assert.ok((await page.getByRole("region", { name: "Verdict" }).innerText()).includes(finding.text));
-    // A changed design is not the one that was replayed.
+    // A changed design is not the one that was replayed; today's settings stay.
     await slider(page, "Robustness Ms").focus();
     await page.keyboard.press("ArrowRight");
     await page.waitForURL(/Ms=1\.41/);
     await replayCard(page).getByText("are not replayed").waitFor();
-    await tracesShown(page, "Record and replay", 0);
+    await tracesShown(page, "Record and replay", 5);
   });
 });
 

@@ -52,9 +52,9 @@ void start_log(const std::string& format, const std::string& level) {
     spdlog::set_default_logger(std::move(logger));
 }
 
+// The logger stays: a thread that was not waited for may still use it.
 void stop_log() {
-    spdlog::shutdown();
-    sink.reset();
+    if (sink) sink->stop();
 }
 
 std::size_t dropped_log_lines() { return sink ? sink->dropped() : 0; }

@@ -10,7 +10,7 @@ namespace tunewright::server {
 
 /// Format: text or json. Level: debug, info, warn, error, off. Throws std::invalid_argument for others.
 void start_log(const std::string& format, const std::string& level);
-/// Writes the lines that still wait, and ends the thread.
+/// Writes the lines that still wait, and ends the thread; later lines are lost.
 void stop_log();
 
 /// Number of lines dropped since the start.

@@ -24,16 +24,17 @@ void write_all(int descriptor, const std::string& text) {
 GatheringSink::GatheringSink(int descriptor, std::size_t max_waiting)
     : descriptor_(descriptor), max_waiting_(max_waiting), thread_([this] { work(); }) {}
 
-GatheringSink::~GatheringSink() {
+void GatheringSink::stop() {
     {
         const std::lock_guard lock(mutex_);
         stopping_ = true;
     }
     changed_.notify_one();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
 }
 
 void GatheringSink::sink_it_(const spdlog::details::log_msg& message) {
+    if (stopping_) return;
     spdlog::memory_buf_t line;
     formatter_->format(message, line);
     if (waiting_.size() == max_waiting_) {

@@ -18,8 +18,10 @@ class GatheringSink : public spdlog::sinks::base_sink<std::mutex> {
 public:
     /// Writes lines to the open file `descriptor`; at most `max_waiting` wait for it.
     GatheringSink(int descriptor, std::size_t max_waiting);
-    /// Writes the waiting lines.
-    ~GatheringSink() override;
+    ~GatheringSink() override { stop(); }
+
+    /// Writes the waiting lines; later ones are lost. By one thread at a time.
+    void stop();
 
     std::size_t dropped() const { return dropped_; }
 

@@ -24,7 +24,7 @@ import { productDetails, productTroubles } from "./cards/in_product.ts";
 import { myControllerCard } from "./cards/my_controller_card.ts";
 import { ownTodayCard } from "./cards/own_today_card.ts";
 import { productCard } from "./cards/product_card.ts";
-import { snippetBlocks } from "./cards/snippets.ts";
+import { snippetBlocks } from "./copy.ts";
 import { askTyped } from "./typed_question.ts";
 import type { TypedAnswer, TypedQuestion } from "./typed_question.ts";
 import { controllerInForm, controllerInProduct } from "./typed_settings.ts";

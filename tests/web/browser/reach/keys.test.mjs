@@ -23,6 +23,7 @@ test("? lists the keys of the screen, and only those", async () => {
     await openDesign(page);
     await slider(page, "Robustness Ms").focus();
     await page.keyboard.press("?");
+    await help(page).waitFor();
     const onDesign = await titles(page);
     for (const title of ["Everywhere", "Design", "Sliders", "Plots", "Documents"])
       assert.ok(onDesign.includes(title), `${title} in ${onDesign.join()}`);

@@ -147,7 +147,7 @@ test("a change sheet of ten parameters and a long name is one page of A4 and of 
 });
 
 test("a batch's page leads to its change sheets: one page a loop, and one with those that have none", async () => {
-  const loops = [1, 2, 3].map((K) => ({ ...REQUEST, name: `TIC-${K}`, plant: { ...REQUEST.plant, K } }));
+  const loops = [1, 2, 3].map((K) => ({ ...REQUEST, name: `TIC-${K}`, plant: `${K} e^(-3s)/((10s+1)(2s+1))` }));
   const jobs = [...loops, { name: "TIC-4", plant: { type: "fopdt", K: 2 } }];
   const { id } = await tests.post("v1/batches", { name: "unit 7", jobs });
   await tests.withPage(`#/batches/${id}`, {}, async (page) => {

@@ -25,7 +25,7 @@ struct LawLimits {
     /// errors and none of 455 was off by 20 %; with fewer rows or larger errors one in ten is off by more than 5 %.
     double max_certain_error = 0.03;
     int min_certain_rows = 150;
-    /// Of u's moves: smaller residuals are rounding of the record's last digits, which any further term explains a bit.
+    /// Relative to u's moves: smaller residuals are rounding of the record's last digits.
     double min_residual = 1e-4;
     /// Noise of u over that of Kp y, and share of u's moves that the law leaves: less noise says that the controller
     /// reads y without the record's noise, if it is no filter that explains nearly all moves.

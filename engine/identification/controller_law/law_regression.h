@@ -40,7 +40,7 @@ LawColumns law_columns(const LawSamples& samples, const LawShape& shape);
 /// Whether the increment that ends at each sample is the law's own.
 std::vector<char> law_increments(const LawSamples& samples, bool with_still);
 
-/// Whether the set point moves in one of these increments: without that its weights leave no trace.
+/// True if the set point moves in one of these increments; otherwise its weights have no effect on u.
 bool set_point_moves(const LawSamples& samples, const std::vector<char>& used);
 
 /// The columns made white by 1/(1 - theta q^-1), stretch by stretch, rows of other increments left out.

@@ -50,7 +50,7 @@ inline constexpr double kMinNoisyMksOverKp = 20;      ///< Mks/|Kp|: beyond the 
 inline constexpr double kUsualN = 10;               ///< Td/Tf of the filter that is tried for a derivative without one
 inline constexpr double kMinNoiseOverRange = 0.02;  ///< standard deviation of u over the actuator's range
 
-/// Of u: what holds the target may exceed a limit by so much, by rounding.
+/// Relative: the u that holds the target may exceed a limit by this much through rounding.
 inline constexpr double kRelativeLimitRounding = 1e-9;
 
 // Choice of an entry

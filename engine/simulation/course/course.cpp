@@ -81,7 +81,7 @@ void add_load(std::vector<StateJump>& jumps, const Course& course, int n, double
     jumps.push_back({load.start, state, 0});
 }
 
-/// What stays of the load in the end.
+/// The part of the load that remains at the end.
 double remaining(const Course& course, bool at_output) {
     if (!course.load || course.load->at_output != at_output || course.load->shape == LoadShape::pulse) return 0;
     return course.load->size;

@@ -105,7 +105,7 @@ export function createPlot(
   );
   closesItself(exportMenu);
   const largeOf = h("span", { class: "visually-hidden" });
-  const largeButton = h("button", { type: "button", class: "quiet", onclick: () => large.toggle() }, "Enlarge", largeOf);
+  const largeButton = h("button", { type: "button", class: "quiet", title: "Enlarge (F)", onclick: () => large.toggle() }, h("span", { "aria-hidden": "true" }, "⤢"), largeOf);
   const legend = h("div", { class: "legend-slot", hidden: !frame.ownLegend });
   const element = h(
     "section",
@@ -373,7 +373,7 @@ export function createPlot(
   const writeTexts = (): void => {
     say(title, frame.title);
     say(tableOf, ` of ${frame.title}`);
-    say(largeOf, ` ${frame.title}`);
+    say(largeOf, `Enlarge ${frame.title}`);
     say(exportOf, ` ${frame.title}`);
     setAttribute(table, "aria-label", `Data of ${frame.title}`);
     const beside = other ? given : given.alternative;

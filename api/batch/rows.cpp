@@ -121,17 +121,8 @@ const Value* todays_entry(const Value& result) {
     return nullptr;
 }
 
-/// Ms of the loop: as implemented if that is known.
-const Value* Ms_of(const Value& entry) {
-    return at(entry, member(entry, "implemented") != nullptr ? "/implemented/robustness/Ms" : "/robustness/Ms");
-}
-
-/// The largest Ms on any plant that the loop may meet.
-const Value* worst_Ms_of(const Value& entry) {
-    const Value *worst = at(entry, "/region/worst_Ms"), *own = Ms_of(entry);
-    if (worst == nullptr || own == nullptr || !worst->IsNumber() || !own->IsNumber()) return worst ? worst : own;
-    return worst->GetDouble() > own->GetDouble() ? worst : own;
-}
+/// The largest Ms on any plant that the loop may meet, as the ranking judges it.
+const Value* worst_Ms_of(const Value& entry) { return at(entry, "/standing/Ms"); }
 
 void add_number(const Value* value, CsvWriter& out) {
     value != nullptr && value->IsNumber() ? out.number(value->GetDouble()) : out.empty();

@@ -1284,7 +1284,8 @@ export type components = {
       model: components["schemas"]["Model"];
     };
     ControllerRecordAnswer: {
-      identified: components["schemas"]["IdentifiedController"];
+      identified?: components["schemas"]["IdentifiedController"];
+      not_identified?: string;
       typing?: components["schemas"]["SettingsAnswer"];
       not_typed?: string;
     };

@@ -91,6 +91,38 @@ test("other values typed in the product's rows are shown with their verdict, mar
   });
 });
 
+test("values typed into a product are there as typed after a reload, and for another reader of the address", async () => {
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    await openLoop(page, { ...LOOP, implement: undefined, baseline: undefined });
+    await chooseProduct(page, person(page), "deltav standard", "Emerson DeltaV PID, FORM Standard");
+    for (const [group, ends] of [["Measurement range", ["0", "200"]], ["Output range", ["0", "100"]]])
+      for (const [index, end] of ["from", "to"].entries()) {
+        const field = page.getByRole("group", { name: new RegExp(`^${group}`) }).getByRole("textbox", { name: end });
+        await field.fill(ends[index]);
+        await field.press("Tab");
+      }
+    await page.getByRole("button", { name: "Type other values" }).click();
+    const gain = page.getByRole("textbox", { name: "GAIN, new" });
+    await gain.fill("1.3");
+    await gain.press("Enter");
+    await page.waitForURL(/typed=/);
+    await settled();
+    const asTyped = async (there) => {
+      await there.getByRole("heading", { name: "Type into Emerson DeltaV PID, FORM Standard" }).waitFor();
+      await there.getByText("robust, set by hand", { exact: true }).waitFor();
+      await there.waitForFunction(
+        () => [...document.querySelectorAll("table.typed tr")].some((row) => /^GAIN/.test(row.textContent) && Number(row.querySelector(".value").textContent) === 1.3),
+      );
+      const request = await requestHandedOut(there);
+      assert.deepEqual([request.controllers[0].settings.GAIN, request.implement.product], [1.3, "emerson_deltav_standard"]);
+    };
+    await page.reload();
+    await asTyped(page);
+    await withPage(new URL(page.url()).hash, {}, asTyped);
+  });
+});
+
 test("settings that are typed are kept as a job: report, change sheet and code have them, from today's", async () => {
   await withPage("", {}, async (page) => {
     const settled = watchCalls(page);

@@ -338,22 +338,32 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     showMine();
   }
 
+  function takeMine({ request, units }: Shown): void {
+    mine = mineOfRequest(request.implement, inUnits(mine, units));
+    picker.set(mine);
+    nameMine();
+    showMine();
+  }
+
+  /** Settings that were typed into another product than the chosen one, such as those of a link. */
+  function bringsProduct({ implement: before }: TuningRequest, { implement }: TuningRequest): boolean {
+    return implement?.product !== undefined && !sameImplement(implement, before) && !sameImplement(implement, implementOf(mine));
+  }
+
   return {
     answer: answer.element,
     below: [code.element, about.element],
     show(next) {
-      const sameJob = shown?.job.id === next.job.id;
-      if (!sameJob || shown?.index !== next.index) tried = null;
+      const before = shown;
+      const sameJob = before?.job.id === next.job.id;
+      if (!sameJob || before?.index !== next.index) tried = null;
       shown = next;
       if (!sameJob) {
-        mine = mineOfRequest(next.request.implement, inUnits(mine, next.units));
         picker.setUnits(next.units);
         picker.setOutput(next.result.model?.fit?.u ?? next.request.record?.u ?? []);
-        picker.set(mine);
-        nameMine();
-        showMine();
+        takeMine(next);
         showTodays();
-      }
+      } else if (bringsProduct(before.request, next.request)) takeMine(next);
       showCode();
       update();
     },

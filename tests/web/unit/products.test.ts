@@ -76,6 +76,12 @@ test("a product is found by the family or the tool by which its users know it, b
   assert.deepEqual(ids("pid compact"), ["siemens_pid_compact", "rockwell_pide"], "a name comes before a family");
 });
 
+test("a product is found in each spelling of its letters", () => {
+  const list = [summary("a", "Jäger", "Regler", [])];
+  for (const typed of ["jager", "Jaeger", "JÄGER"]) assert.deepEqual(findProducts(list, typed).map(({ id }) => id), ["a"], typed);
+  assert.equal(productTitle({ maker: "Jäger", name: "Jäger R4" }), "Jäger R4");
+});
+
 test("a name's own words come before what lies inside words and parameters", () => {
   const list = [summary("a", "Acme", "Regulator", ["fox"]), summary("b", "Zeta", "Fox", [])];
   assert.deepEqual(

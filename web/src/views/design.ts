@@ -214,6 +214,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     code: screen!.result === whole ? index : null,
     mark: modified.mark(),
     typeable: modified.isMovable(),
+    outdated: modified.isOutdated(),
   });
 
   function showResult(job: Job, whole: Result, workspace: Workspace): void {

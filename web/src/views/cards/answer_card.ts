@@ -16,6 +16,8 @@ export interface Answer {
   below: HTMLElement[];
   /** The part that is folded away. */
   details: HTMLElement[];
+  /** A newer answer is on its way. */
+  outdated: boolean;
   /** Other values can be typed in the place of these. `choices`: by a row's name; empty: a number. */
   choices: ((name: string) => string[]) | null;
 }
@@ -52,6 +54,8 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
   let made = "";
   /** The values are fields in which others can be typed. */
   let typing = false;
+  /** Typed values that are being converted. */
+  let converting = 0;
   const spoken = h("span", { class: "visually-hidden" });
   const visible = h("span", {});
   const title = h("h2", { id: uniqueId("answer") }, visible, spoken);
@@ -113,8 +117,10 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
   function typed(): void {
     if (!shown) return;
     const texts = shown.rows.map(({ name, value }, index) => [name, lines[index]!.text() ?? value] as const);
+    for (const line of lines) line.handIn();
     if (texts.every(([, text], index) => text === shown!.rows[index]!.value)) return refuse("");
-    void onType(Object.fromEntries(texts));
+    converting += 1;
+    void onType(Object.fromEntries(texts)).finally(() => (converting -= 1));
   }
 
   function refuse(sentence: string): void {
@@ -127,7 +133,7 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
     const wanted = JSON.stringify([withToday, typing, rows.map(({ label, about }) => [label, about])]);
     if (wanted !== made) make(rows, withToday);
     made = wanted;
-    rows.forEach((row, index) => lines[index]!.write(row));
+    rows.forEach((row, index) => lines[index]!.write(row, converting > 0 || (shown?.outdated ?? false)));
   }
 
   function setTitle([first, second]: Answer["heading"]): void {
@@ -174,7 +180,10 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
 
 interface RowElements {
   element: HTMLElement;
-  write(row: AnswerRow): void;
+  /** `keep`: the answer is older than what was handed in; a text that was not handed in yet stays in any case. */
+  write(row: AnswerRow, keep: boolean): void;
+  /** The text of its field is on its way to the service. */
+  handIn(): void;
   /** The text of its field; null: it has none. */
   text(): string | null;
 }
@@ -194,6 +203,9 @@ function rowElements({ label, about }: AnswerRow, options: RowOptions): RowEleme
   const field = fieldOf(label, options);
   const cell = h("td", { class: "value" }, field);
   const dimension = h("td", { class: "unit" });
+  /** The text was changed since it was written: by the user, and handed in or not. */
+  let [changed, handedIn] = [false, true];
+  field?.addEventListener("input", () => ([changed, handedIn] = [true, false]));
   const copy = copyButton({ label: "Copy", spoken: `Copy ${label}`, look: "quiet", text: options.current }, options.announce);
   return {
     element: h(
@@ -205,12 +217,15 @@ function rowElements({ label, about }: AnswerRow, options: RowOptions): RowEleme
       dimension,
       h("td", {}, copy),
     ),
-    write({ value, unit, today }) {
+    write({ value, unit, today }, keep) {
       say(before, today);
-      if (field) field.value = value;
-      else say(cell, value);
       say(dimension, unit);
+      if (!field) return say(cell, value);
+      if (!handedIn || (changed && keep)) return;
+      field.value = value;
+      changed = false;
     },
+    handIn: () => (handedIn = true),
     text: () => field?.value ?? null,
   };
 }

@@ -157,6 +157,7 @@ test("rows stand in the product's order under its labels; the switch of the dire
   );
   assert.equal(rows[1]!.about, "0 to 60, step 0.01");
   assert.equal(rows[2]!.about, "CA turns the error.");
+  assert.deepEqual(rows.map(({ explains }) => explains), ["Kp", "Ti", "action"], "by their roles");
   assert.equal(typedText("Acme PID: robust", rows), "Acme PID: robust\nS1 Kp = 2.500\nTi = 1.25 min\nCA = 1");
 });
 

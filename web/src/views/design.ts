@@ -7,7 +7,7 @@ import { defaultDrawn, drawnEntries, entryNames, proposedEntry } from "../charts
 import type { Drawn } from "../charts/drawn.ts";
 import { recordFrame } from "../charts/record.ts";
 import { BESIDE_LINEAR, hasLinear } from "../charts/responses.ts";
-import { h } from "../dom.ts";
+import { h, keepFocus } from "../dom.ts";
 import { withLambda } from "../form/tuning_request.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
@@ -170,14 +170,16 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       columns.some(({ entry }) => entry.region),
       columns.some(({ entry }) => entry.controller?.form === "npid"),
     );
-    const main = figuresTable("Main figures", columns, groups.filter((group) => group.main));
-    mainFigures.replaceWith(main);
-    mainFigures = main;
-    // Folded parts are updated on release.
-    if (held) return;
-    const others = figuresTable("All other figures", columns, groups.filter((group) => !group.main));
-    otherFigures.replaceWith(others);
-    otherFigures = others;
+    keepFocus(figures, () => {
+      const main = figuresTable("Main figures", columns, groups.filter((group) => group.main));
+      mainFigures.replaceWith(main);
+      mainFigures = main;
+      // Folded parts are updated on release.
+      if (held) return;
+      const others = figuresTable("All other figures", columns, groups.filter((group) => !group.main));
+      otherFigures.replaceWith(others);
+      otherFigures = others;
+    });
   }
 
   /** Updates the parts that follow a slider: verdict, settings, figures and plots. */
@@ -191,7 +193,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const drawn = drawnEntries(result, workspace.drawn ? drawnOf(workspace.drawn, origin) : defaultDrawn(result));
     const listed = listedEntries(entries.length, drawn, index);
     const record = formatRoute({ screen: "identify", job: job.id });
-    showVerdict(verdict, result, names, index, listed, record, units);
+    keepFocus(verdict, () => showVerdict(verdict, result, names, index, listed, record, units));
     if (held) own.move(ownShown(job, whole, index, names[index]!, units));
     showFigures(result, listed, drawn, names, units, held);
     linearNote.hidden = !hasLinear(drawn);

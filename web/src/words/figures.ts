@@ -172,6 +172,15 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
         controller("b", "b", "set-point weight of P", "1 by default"),
         controller("c", "c", "set-point weight of D", "0 by default"),
         {
+          label: withUnit("Longest sample time", units.time),
+          meaning: "of a program: Ms stays within 5 %",
+          about: "longest_sample_time",
+          value: ({ longest_sample_time: longest }) =>
+            typeof longest === "number"
+              ? { text: formatNumber(longest), why: "" }
+              : missing(longest === null ? "With no sample time Ms stays within 5 %." : "It is not computed for these settings."),
+        },
+        {
           label: "Action",
           meaning: "sign of the gain",
           about: "action",

@@ -1,5 +1,7 @@
 // Products in words: results of a search, the rows to type, the implemented loop next to the ideal one, evidence.
 import type { AsEntered, Entry, Evidence, Implemented, Need, Notice, Product, ProductSummary } from "../api/types.ts";
+import type { ExplainedName } from "./explained.ts";
+import { explanationOfParameter } from "./explanation_of.ts";
 import { plainText, searchText, searchWords } from "./search_text.ts";
 import { DASH, formatNumber, formatParameter, formatPercent } from "./numbers.ts";
 
@@ -55,6 +57,8 @@ export interface TypedRow {
   unit: string;
   /** Range, step and remark, as details. */
   about: string;
+  /** The explanation of its meaning, if there is one. */
+  explains: ExplainedName | undefined;
 }
 
 /** In the order of the product's own list; other settings, such as the direction, after it. */
@@ -71,6 +75,7 @@ export function typedRows(product: Product, entered: AsEntered): TypedRow[] {
       value: entered.as_typed[name]!,
       unit: entered.units[name] ?? parameter?.unit ?? "",
       about: [parameter ? rangeWords(parameter) : (product.action.text ?? ""), parameter?.remark].filter(Boolean).join("; "),
+      explains: parameter ? explanationOfParameter(parameter) : name === product.action.name ? "action" : undefined,
     };
   });
 }

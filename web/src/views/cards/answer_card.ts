@@ -1,5 +1,6 @@
 // The settings to enter: the chosen controller in the user's product or in a textbook form, with today's values.
 import { breakable, h, say, uniqueId } from "../../dom.ts";
+import { explained } from "../../reach/explanation.ts";
 import type { AnswerRow } from "../../words/answer.ts";
 import { tableText } from "../../words/answer.ts";
 import { copyButton } from "../copy.ts";
@@ -130,7 +131,7 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
 
   function showRows(rows: readonly AnswerRow[]): void {
     const withToday = rows.some(({ today }) => today !== "");
-    const wanted = JSON.stringify([withToday, typing, rows.map(({ label, about }) => [label, about])]);
+    const wanted = JSON.stringify([withToday, typing, rows.map(({ label, about, explains }) => [label, about, explains])]);
     if (wanted !== made) make(rows, withToday);
     made = wanted;
     rows.forEach((row, index) => lines[index]!.write(row, converting > 0 || (shown?.outdated ?? false)));
@@ -198,7 +199,7 @@ interface RowOptions {
   onType(): void;
 }
 
-function rowElements({ label, about }: AnswerRow, options: RowOptions): RowElements {
+function rowElements({ label, about, explains }: AnswerRow, options: RowOptions): RowElements {
   const before = h("td", { class: "today" });
   const field = fieldOf(label, options);
   const cell = h("td", { class: "value" }, field);
@@ -211,7 +212,7 @@ function rowElements({ label, about }: AnswerRow, options: RowOptions): RowEleme
     element: h(
       "tr",
       { title: about || null },
-      h("th", { scope: "row" }, breakable(label)),
+      h("th", { scope: "row" }, explains ? explained(explains, breakable(label)) : breakable(label)),
       options.withToday ? before : "",
       cell,
       dimension,

@@ -1167,9 +1167,9 @@ export type components = {
       worst_relative_IAE: number;
       mean_relative_IAE: number;
       worst_at: number;
-      points: components["schemas"]["PlacePrice"][];
+      points: components["schemas"]["PointCost"][];
     };
-    PlacePrice: {
+    PointCost: {
       at: number;
       own: components["schemas"]["Controller"];
       own_IAE: number;
@@ -1629,7 +1629,7 @@ export type RangeResult = components['schemas']['RangeResult'];
 export type Range = components['schemas']['Range'];
 export type RangePoint = components['schemas']['RangePoint'];
 export type OneSetting = components['schemas']['OneSetting'];
-export type PlacePrice = components['schemas']['PlacePrice'];
+export type PointCost = components['schemas']['PointCost'];
 export type Schedule = components['schemas']['Schedule'];
 export type ScheduleRow = components['schemas']['ScheduleRow'];
 export type RangeCurves = components['schemas']['RangeCurves'];

@@ -6,7 +6,7 @@ import type { Job, Result, TuningRequest } from "../api/types.ts";
 import { defaultDrawn, drawnEntries, entryNames, proposedEntry } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { recordFrame } from "../charts/record.ts";
-import { BESIDE_LINEAR, hasLinear } from "../charts/responses.ts";
+import { LINEAR_NOTE, hasLinear } from "../charts/responses.ts";
 import { h, keepFocus } from "../dom.ts";
 import { withLambda } from "../form/tuning_request.ts";
 import { plotGrid } from "../plot/grid.ts";
@@ -90,7 +90,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const legend = createLegend(store);
   const plots = plotGrid(announce);
   const replay = replayCard(plots);
-  const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
+  const linearNote = h("p", { class: "hint", hidden: true }, LINEAR_NOTE);
   let finished: { job: Job; result: Result } | null = null;
   let screen: OnScreen | null = null;
   /** The job on the cards. */

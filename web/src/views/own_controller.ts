@@ -81,7 +81,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
   const about = productCard();
   const code = codeCard(announce);
   const redesign = h("button", { type: "button", onclick: () => void designForMine() });
-  const today = ownTodayCard(errors, (settings) => void designBesideToday(settings));
+  const today = ownTodayCard(errors, (settings) => void designWithToday(settings));
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const picker = myControllerCard(
     errors,
@@ -342,7 +342,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     if (request) await work(redesign, withImplement(request, implementOf(mine)));
   }
 
-  async function designBesideToday(settings: Record<string, SettingValue> | undefined): Promise<void> {
+  async function designWithToday(settings: Record<string, SettingValue> | undefined): Promise<void> {
     const request = shown?.request;
     const implement = implementOf(mine);
     if (!request || !mine) return;

@@ -111,7 +111,7 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
     evaluation.verification.iae_step_halving = of_load.errors.IAE;
     if (to_infinity && !o.actuator)
         verify_integral(evaluation.verification, load, evaluation.performance.load.IAE, !delta_r);
-    if (!as_promised(of_setpoint) || !as_promised(of_load))
+    if (!is_accurate(of_setpoint) || !is_accurate(of_load))
         evaluation.warnings.push_back(
             {"coarse-figures",
              "Halving the time steps still changes an index by more than its promised accuracy, or could not be tried; "

@@ -1167,9 +1167,9 @@ export type components = {
       worst_relative_IAE: number;
       mean_relative_IAE: number;
       worst_at: number;
-      points: components["schemas"]["PlacePrice"][];
+      points: components["schemas"]["PointCost"][];
     };
-    PlacePrice: {
+    PointCost: {
       at: number;
       own: components["schemas"]["Controller"];
       own_IAE: number;
@@ -1284,7 +1284,8 @@ export type components = {
       model: components["schemas"]["Model"];
     };
     ControllerRecordAnswer: {
-      identified: components["schemas"]["IdentifiedController"];
+      identified?: components["schemas"]["IdentifiedController"];
+      not_identified?: string;
       typing?: components["schemas"]["SettingsAnswer"];
       not_typed?: string;
     };
@@ -1628,7 +1629,7 @@ export type RangeResult = components['schemas']['RangeResult'];
 export type Range = components['schemas']['Range'];
 export type RangePoint = components['schemas']['RangePoint'];
 export type OneSetting = components['schemas']['OneSetting'];
-export type PlacePrice = components['schemas']['PlacePrice'];
+export type PointCost = components['schemas']['PointCost'];
 export type Schedule = components['schemas']['Schedule'];
 export type ScheduleRow = components['schemas']['ScheduleRow'];
 export type RangeCurves = components['schemas']['RangeCurves'];

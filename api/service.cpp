@@ -335,6 +335,7 @@ Answer controller_record_call(std::string_view body, const RunControl&) {
         recorded_controller(request.read.record, request.device ? &*request.device : nullptr, request.sample_time);
     if (!today) return refusal(to_problem(today.error()));
     ControllerRecordAnswer answer{.found = std::move(today->found), .typing = {}, .not_typed = {}};
+    if (auto warning = mode_warning(request.read)) answer.found.warnings.push_back(*std::move(warning));
     if (today->settings)
         answer.typing.emplace(SettingsAnswer{
             request.device->product, today->settings->settings, today->settings->settings, today->settings->realised,

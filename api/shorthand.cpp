@@ -41,7 +41,8 @@ std::optional<Problem> without_csv(const CsvRequest& question) {
         {"--d", !question.d.empty()},           {"--dt", !question.dt.empty()},
         {"--kind", !question.kind.empty()},     {"--u0", !question.u0.empty()},
         {"--y0", !question.y0.empty()},         {"--run", !question.run.empty()},
-        {"--u-step", !question.u_step.empty()}, {"--u-limits", !question.u_limits.empty()}};
+        {"--u-step", !question.u_step.empty()}, {"--u-limits", !question.u_limits.empty()},
+        {"--mode", !question.mode.empty()}};
     for (const auto& [name, is] : given)
         if (is)
             return unclear(std::string(name) +
@@ -121,8 +122,11 @@ Json record_of(const CsvRequest& question, std::string csv) {
         const bool number = choice.size() <= 3 && choice.find_first_not_of("0123456789") == std::string::npos;
         return number ? Json(std::stoi(choice)) : Json(choice);
     };
-    for (const auto& [name, choice] :
-         {std::pair{"t", &question.t}, {"u", &question.u}, {"y", &question.y}, {"r", &question.r}}) {
+    for (const auto& [name, choice] : {std::pair{"t", &question.t},
+                                       {"u", &question.u},
+                                       {"y", &question.y},
+                                       {"r", &question.r},
+                                       {"mode", &question.mode}}) {
         if (choice->empty()) continue;
         columns[name] = column_of(*choice);
     }

@@ -14,7 +14,7 @@ namespace tunewright::api {
 
 /// Options for reading a CSV file: members of the request's record, units and identify; "" if not given.
 struct CsvRequest {
-    std::string t, u, y, r;  ///< headings, or numbers from 1
+    std::string t, u, y, r, mode;  ///< headings, or numbers from 1
     std::string dt, time_unit, kind, model;
     std::vector<std::string> d;         ///< headings or numbers of measured disturbances
     std::vector<std::string> u_limits;  ///< low and high; empty: not given

@@ -33,7 +33,7 @@ const Description<PreviewColumn>& preview_column_contract() {
         using C = PreviewColumn;
         Description<C> d("PreviewColumn", "A column of the file.");
         d.field("heading", &C::heading, words(), "As in the file; empty if it has none.")
-            .field("guess", &C::guess, words(), "Role of the column in the record: t, u, y, r, or - for none.")
+            .field("guess", &C::guess, words(), "Role of the column in the record: t, u, y, r, mode, or - for none.")
             .field("confidence", &C::confidence, value(),
                    "1: chosen, or an exact name; 0.9: a tag that ends in one; 0.7: a name that contains one; 0.5: from "
                    "the contents.")

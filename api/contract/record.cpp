@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "api/csv/columns/loop_mode.h"
 #include "api/csv/shape/runs.h"
 #include "api/csv/time_stamp.h"
 #include "engine/number_text.h"
@@ -12,7 +13,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMaxHeadingLength = 200;
+constexpr std::size_t kMaxHeadingLength = 200, kMaxModeLength = 40;
 
 Codec<ColumnChoice> column_choice() {
     return {
@@ -79,6 +80,10 @@ const Description<ColumnChoices>& columns_contract() {
             .field("u", &ColumnChoices::u, maybe(column_choice()), "Controller output.")
             .field("y", &ColumnChoices::y, maybe(column_choice()), "Measurement.")
             .field("r", &ColumnChoices::r, maybe(column_choice()), "Set point, if the record has one.")
+            .field(
+                "mode", &ColumnChoices::mode, maybe(column_choice()),
+                "Mode of the loop, if the record has it: words such as AUTO, CAS and MAN, or numbers whose meaning the "
+                "heading gives, such as Mode (0=MAN, 1=AUTO).")
             .field("d", &ColumnChoices::d,
                    unless<std::vector<ColumnChoice>>(list_of(column_choice(), 1, kMaxFurtherInputs),
                                                      [](const auto& columns) { return columns.empty(); }),
@@ -121,6 +126,7 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
                                           {"u", record.u.has_value()},
                                           {"y", record.y.has_value()},
                                           {"r", record.r.has_value()},
+                                          {"mode", record.mode.has_value()},
                                           {"d", record.d.has_value()}}) {
             if (given) reader.fault_at(name, std::string(name) + " is given together with csv; give one of them.");
         }
@@ -142,15 +148,16 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
     if (record.t && record.dt) reader.fault_at("dt", "dt and t are both given; remove one.");
     if (!record.t && !record.dt)
         reader.fault_at("t", "t is missing; give the times as an array, or the spacing as dt.");
-    const auto length = [&](const char* name, const std::vector<double>& column) {
+    const auto length = [&](const char* name, const auto& column, const char* values = " numbers") {
         if (column.size() != record.y->size()) {
-            reader.fault_at(name, std::string(name) + " has " + std::to_string(column.size()) + " numbers and y " +
+            reader.fault_at(name, std::string(name) + " has " + std::to_string(column.size()) + values + " and y " +
                                       std::to_string(record.y->size()) + "; they must have the same number.");
         }
     };
     if (record.u) length("u", *record.u);
     if (record.t) length("t", *record.t);
     if (record.r) length("r", *record.r);
+    if (record.mode) length("mode", *record.mode, " words");
     for (std::size_t i = 0; record.d && i < record.d->size(); ++i) {
         const Reader::At d(reader, "d"), at(reader, i);
         length("values", (*record.d)[i].values);
@@ -210,6 +217,12 @@ const Description<GivenRecord>& record_contract() {
             .field("u", &GivenRecord::u, column(), "Controller output.", {.unit = "u"})
             .field("y", &GivenRecord::y, column(), "Measurement.", {.unit = "y"})
             .field("r", &GivenRecord::r, column(), "Set point, if the record has one.", {.unit = "y"})
+            .field(
+                "mode", &GivenRecord::mode, maybe(list_of(text(kMaxModeLength), 2, kMaxSamples)),
+                "Mode of the loop in each sample, if the record has it, as text: AUTO, CAS (cascade, which counts as "
+                "automatic, with the set point in r), MAN and the words of several makers and languages. An empty "
+                "text keeps the mode of the sample before. Samples in manual are left out of today's settings and of "
+                "the replay; an unknown word counts as manual, and the warning unknown-mode names it.")
             .field("d", &GivenRecord::d, maybe(list_of(object(further_input_contract()), 1, kMaxFurtherInputs)),
                    "Measured disturbances: further inputs that move y, such as another heater. They are identified "
                    "together with u.")
@@ -275,6 +288,16 @@ const Description<IdentifyQuestion>& identify_contract() {
     return description;
 }
 
+static void read_modes(const std::vector<std::string>& words, ReadRecord& out) {
+    ModeColumn mode;
+    for (const std::string& word : words) {
+        mode.see(word);
+        mode.add_row();
+    }
+    out.unknown_mode = mode.unknown();
+    out.record.automatic = mode.take();
+}
+
 ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     ReadRecord out;
     out.record.kind = given.kind;
@@ -289,6 +312,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
         out.record.u = std::move(*given.u);
         out.record.y = std::move(*given.y);
         if (given.r) out.record.r = std::move(*given.r);
+        if (given.mode) read_modes(*given.mode, out);
         if (given.d) out.record.d = std::move(*given.d);
         choose_part(given, out, reader);
         check_disturbances(out.record, false, reader);
@@ -315,12 +339,14 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     out.record.u = std::move(record.u);
     out.record.y = std::move(record.y);
     out.record.r = std::move(record.r);
+    out.record.automatic = std::move(record.automatic);
     out.record.d = std::move(record.d);
     out.record.line = std::move(record.lines);
     out.record.u_full_scale = record.u_full_scale;
     out.dropped = record.dropped;
     out.unread = std::move(record.unread);
     out.unread_column = std::move(record.unread_column);
+    out.unknown_mode = std::move(record.unknown_mode);
     out.time_unit_known = record.time_unit_known;
     out.notes = std::move(record.notes);
     choose_part(given, out, reader);
@@ -401,6 +427,7 @@ void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader) {
     keep(rows, record.u);
     keep(rows, record.y);
     keep(rows, record.r);
+    keep(rows, record.automatic);
     for (FurtherInput& input : record.d) keep(rows, input.values);
     keep(rows, record.line);
     read.notes.push_back("The record has " + std::to_string(all) + " samples; the " + std::to_string(rows.size()) +
@@ -486,12 +513,18 @@ void ask_for_unit(IdentifiedModel& model) {
 
 }  // namespace
 
+std::optional<Warning> mode_warning(const ReadRecord& read) {
+    if (read.unknown_mode.empty()) return std::nullopt;
+    return Warning{"unknown-mode", read.unknown_mode};
+}
+
 void add_reading(const ReadRecord& read, IdentifiedModel& model) {
     DataQuality& quality = model.data_quality;
     quality.time_unit_assumed = !read.time_unit_known;
     if (!read.time_unit_known) ask_for_unit(model);
     if (!read.unread.empty()) model.warnings.push_back({"lines-left-out", read.unread});
     if (!read.unread_column.empty()) model.warnings.push_back({"column-left-out", read.unread_column});
+    if (auto warning = mode_warning(read)) model.warnings.push_back(*std::move(warning));
     quality.samples_dropped += read.dropped;
     quality.notes.insert(quality.notes.begin(), read.notes.begin(), read.notes.end());
     if (read.dropped > 0)

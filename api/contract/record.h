@@ -26,6 +26,7 @@ inline verdict::Labels labels_of(const std::optional<Units>& units) {
 /// A record as sent.
 struct GivenRecord {
     std::optional<std::vector<double>> t, u, y, r;
+    std::optional<std::vector<std::string>> mode;
     std::optional<std::vector<FurtherInput>> d;
     std::optional<double> dt;
     std::optional<std::string> csv;
@@ -49,7 +50,7 @@ struct ReadRecord {
     Record record;
     int dropped = 0;
     std::vector<std::string> notes;
-    std::string unread = {}, unread_column = {};  ///< as in CsvRecord
+    std::string unread = {}, unread_column = {}, unknown_mode = {};  ///< as in CsvRecord
     bool time_unit_known = true;  ///< false: neither the file nor the request states the unit of the times
 };
 
@@ -72,7 +73,10 @@ void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader);
 /// Reports each measured disturbance that moves only as u, y or another one does, at d or at columns/d.
 void check_disturbances(const Record& record, bool from_csv, Reader& reader);
 
-/// Adds the findings of reading the CSV to the data's quality.
+/// The warning unknown-mode, if there are unknown modes.
+std::optional<Warning> mode_warning(const ReadRecord& read);
+
+/// Adds the findings of reading the record to the model.
 void add_reading(const ReadRecord& read, IdentifiedModel& model);
 
 /// Removes the traces unless the request asks for them.

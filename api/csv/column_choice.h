@@ -16,14 +16,14 @@ inline constexpr std::size_t kMaxColumns = 4000;
 using ColumnChoice = std::variant<std::string, int>;
 
 struct ColumnChoices {
-    std::optional<ColumnChoice> t, u, y, r = {};
+    std::optional<ColumnChoice> t, u, y, r = {}, mode = {};
     std::vector<ColumnChoice> d = {};  ///< measured disturbances, at most kMaxFurtherInputs
 };
 
 /// The choices that are headings.
 inline std::vector<std::string> chosen_names(const ColumnChoices& chosen) {
     std::vector<std::string> names;
-    for (const auto* choice : {&chosen.t, &chosen.u, &chosen.y, &chosen.r})
+    for (const auto* choice : {&chosen.t, &chosen.u, &chosen.y, &chosen.r, &chosen.mode})
         if (*choice && std::holds_alternative<std::string>(**choice)) names.push_back(std::get<std::string>(**choice));
     for (const ColumnChoice& choice : chosen.d)
         if (std::holds_alternative<std::string>(choice)) names.push_back(std::get<std::string>(choice));

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "api/csv/columns/columns.h"
+#include "api/csv/columns/loop_mode.h"
 #include "api/csv/record_notes.h"
 #include "api/csv/shape/held_values.h"
 #include "api/csv/shape/runs.h"
@@ -105,6 +106,7 @@ private:
                                                                    : !times || times->unit_known());
         if (columns_.at[kReferenceRole] && !hold_reference(record_.r))
             columns_.notes.emplace_back("The column of the set point contains no number; the record has no set point.");
+        if (mode_) record_.unknown_mode = mode_->unknown(), record_.automatic = mode_->take();
         if (layout_.pivoted) hold_input(record_);
         write_notes(times);
     }
@@ -150,6 +152,8 @@ private:
         const std::size_t max = std::min(options_.max_samples, text_.size() / typical + 1);
         for (auto* column : {&record_.t, &record_.u, &record_.y}) column->reserve(max);
         if (columns_.at[kReferenceRole]) record_.r.reserve(max);
+        if (const auto column = columns_.at[kModeRole])
+            mode_.emplace(mode_codes(split_heading(heading_of(*column, ""))));
         for (const std::size_t column : columns_.d) record_.d.push_back({disturbance_name(column), {}});
         d_.assign(columns_.d.size(), kNoNumber);
         last_d_ = d_;
@@ -209,6 +213,7 @@ private:
         record_.y.push_back(y);
         if (!std::isnan(u)) last_u_ = u;
         if (columns_.at[kReferenceRole]) record_.r.push_back(std::exchange(r_, kNoNumber));
+        if (mode_) mode_->add_row();
         for (std::size_t k = 0; k < d_.size(); ++k) {
             if (!std::isnan(d_[k])) last_d_[k] = d_[k];
             record_.d[k].values.push_back(std::exchange(d_[k], kNoNumber));
@@ -216,7 +221,8 @@ private:
         record_.lines.push_back(line);
     }
 
-    // Reads set point and disturbances, which hold until the next row that counts: a line may have only one of them.
+    // Reads set point, mode and disturbances, which hold until the next row that counts: a line may have only one of
+    // them.
     bool read_others(const CsvLine& line) {
         bool any = false;
         const auto take = [&](std::size_t column, double& target) {
@@ -227,6 +233,7 @@ private:
         };
         if (columns_.at[kReferenceRole]) take(*columns_.at[kReferenceRole], r_);
         for (std::size_t k = 0; k < d_.size(); ++k) take(columns_.d[k], d_[k]);
+        if (mode_) any = mode_->see(cell(line, *columns_.at[kModeRole])) || any;
         return any;
     }
 
@@ -374,6 +381,7 @@ private:
     std::string first_unread_;
     double spacing_ = 1;
     double r_ = kNoNumber, last_u_ = kNoNumber;  // r_, d_: read, but not yet in a row of the record
+    std::optional<ModeColumn> mode_;
     std::vector<double> d_, last_d_;
     std::string missing_word_, low_word_, high_word_;
     CsvRecord record_;

@@ -43,11 +43,13 @@ struct CsvRun {
 struct CsvRecord {
     std::vector<double> t, u, y;         ///< u and y are NaN where a cell is blank, "Bad", ...; never both
     std::vector<double> r;               ///< set point, a number in each sample; empty if the file has none
+    std::vector<bool> automatic;         ///< as in Record; empty if the file has no mode
     std::vector<FurtherInput> d;         ///< measured disturbances; NaN where a cell holds no number
     std::vector<int> lines;              ///< line of each sample in the file, from 1
     int dropped = 0;                     ///< lines left out: unreadable, without a time, or with neither u nor y
     std::string unread;                  ///< a sentence about the lines that could not be read; "" if there are none
     std::string unread_column;           ///< DetectedColumns::unread
+    std::string unknown_mode;            ///< a sentence about modes that are not known; "" if there are none
     std::vector<CsvSkip> skipped;        ///< the first kMaxSkips of them, and the lines above the rows
     std::vector<CsvRun> runs;            ///< one for each restart of the times; empty if there is one run
     int run = 1;                         ///< the one that is read, from 1

@@ -69,7 +69,7 @@ double confidence_of(const CsvLayout& layout, std::size_t column, ColumnRole rol
 
 void guess(const DetectedColumns& found, const CsvLayout& layout, const ColumnChoices& chosen, CsvPreview& preview) {
     const std::array<bool, kRoleCount> given = {chosen.t.has_value(), chosen.u.has_value(), chosen.y.has_value(),
-                                                chosen.r.has_value()};
+                                                chosen.r.has_value(), chosen.mode.has_value()};
     for (const ColumnRole role : kRoles) {
         if (!found.at[role]) continue;
         PreviewColumn& column = preview.columns[*found.at[role]];
@@ -163,7 +163,7 @@ CsvPreview preview_csv(std::string_view bytes, const CsvOptions& options) {
     preview.runs = std::move(record.runs);
     if (!preview.runs.empty()) preview.run = record.run;
     preview.notes = std::move(record.notes);
-    for (std::string* warning : {&record.unread, &record.unread_column})
+    for (std::string* warning : {&record.unread, &record.unread_column, &record.unknown_mode})
         if (!warning->empty()) preview.notes.push_back(std::move(*warning));
     return preview;
 }

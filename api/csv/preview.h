@@ -12,7 +12,7 @@ namespace tunewright::api {
 
 struct PreviewColumn {
     std::string heading;             ///< "" if the file has none
-    std::string guess = "-";         ///< "t", "u", "y", "r", or "-" for none
+    std::string guess = "-";         ///< "t", "u", "y", "r", "mode", or "-" for none
     double confidence = 0;           ///< of the guess, 0 to 1: chosen or exactly named 1, from contents alone 0.5
     std::string unit;                ///< as in the file; "" if it has none
     std::string first;               ///< first cell that is not blank, as written

@@ -386,6 +386,9 @@ Expected<IdentifiedModel> identified(const Record& record, const IdentifyOptions
     Expected<IdentifiedModel> model = model_of(record, *looked, options, control);
     const bool in_loop = looked->loop || (model && model->data_quality.closed_loop) || !record.r.empty();
     const ColdStart start = by_fit(options.method) ? cold_start(record, looked->clean, in_loop) : ColdStart::none;
+    if (model && looked->loop && model->data_quality.closed_loop)
+        model->loop = std::make_shared<const IdentifiedLoop>(
+            identified_loop(std::move(looked->clean), std::move(looked->loop->set_point), record));
     if (start == ColdStart::none) return model;
     Record off = record;
     off.u0 = off_level(record);

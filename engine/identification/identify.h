@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -123,6 +124,8 @@ struct DisturbanceModel {
     double share = 0;  ///< share of the variance of y due to u and the further inputs, 0 to 1
 };
 
+struct IdentifiedLoop;  // closed_loop/loop_record.h
+
 struct IdentifiedModel {
     Plant plant;
     double fit_percent = 0;
@@ -141,6 +144,7 @@ struct IdentifiedModel {
         region;  ///< for the best-ranked controller on the 95 % confidence region; tune() sets it
     DataQuality data_quality;
     std::vector<Warning> warnings;
+    std::shared_ptr<const IdentifiedLoop> loop;  ///< empty: not identified as a loop
 };
 
 /// The plant whose free run, driven by the recorded u from rest at u0 (or the first u), is closest to y: least squares

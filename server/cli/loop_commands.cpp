@@ -23,6 +23,8 @@ void add_record_options(CLI::App& app, api::CsvRequest& question) {
     app.add_option("--u", question.u, "CSV: heading or number of the controller output")->type_name("COLUMN");
     app.add_option("--y", question.y, "CSV: heading or number of the measurement")->type_name("COLUMN");
     app.add_option("--r", question.r, "CSV: heading or number of the set point, if there is one")->type_name("COLUMN");
+    app.add_option("--mode", question.mode, "CSV: heading or number of the loop's mode, if there is one")
+        ->type_name("COLUMN");
     app.add_option("--d", question.d, "CSV: heading or number of a measured disturbance; may be repeated")
         ->type_name("COLUMN")
         ->take_all()

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "api/csv/columns/loop_mode.h"
 #include "api/csv/time_stamp.h"
 
 namespace tunewright::api {
@@ -37,6 +38,7 @@ void look_at(std::string_view cell, DecimalSign sign, double& last, ColumnProfil
         profile.dates += stamp->has_clock ? 0 : 1;
         profile.clocks += stamp->has_date ? 0 : 1;
     } else {
+        profile.modes += mode_word(cell).has_value() ? 1 : 0;
         if (profile.texts++ == 0)
             profile.first_text = std::string(cell);
         else

@@ -15,6 +15,7 @@ struct ColumnProfile {
     int numbers = 0, stamps = 0, missing = 0, texts = 0;
     int dates = 0, clocks = 0;              ///< of the stamps: those without a time of day, and those without a date
     int switches = 0;                       ///< words such as ON and OFF; not among the texts
+    int modes = 0;                          ///< texts that are modes of a loop (loop_mode.h)
     int changes = 0;                        ///< of the numbers and words, from line to line
     int falls = 0;                          ///< numbers below the previous one
     int text_changes = 0;                   ///< of the texts, from line to line

@@ -77,6 +77,12 @@ std::string columns_unread(const ColumnFacts& facts, const std::vector<std::size
            " not read, because u_step gives u. If the file has u, remove u_step and choose its column.";
 }
 
+std::string codes_without_meaning(const ColumnFacts& facts, std::size_t column) {
+    return "Column " + facts.shown(column) +
+           " holds numbers, and its heading does not say which is automatic: the mode is not read. Name it such as "
+           "\"Mode (0=MAN, 1=AUTO)\".";
+}
+
 std::string surplus_note(const CsvLayout& layout) {
     return surplus_counted(layout) + ": they are read as those of the first " + std::to_string(layout.headings.size()) +
            " headings, and " + listed(quoted_all(layout.surplus), "and") +

@@ -37,6 +37,9 @@ CsvFault step_with_column(const ColumnFacts& facts, const std::vector<std::size_
 /// The note if a step of u is given and `columns` may be u: they are not read.
 std::string columns_unread(const ColumnFacts& facts, const std::vector<std::size_t>& columns);
 
+/// The sentence about a mode in numbers whose heading does not say which is automatic.
+std::string codes_without_meaning(const ColumnFacts& facts, std::size_t column);
+
 /// The note about surplus headings, whether the first ones are taken for those of the values or not.
 std::string surplus_note(const CsvLayout& layout);
 CsvFault surplus_fault(const CsvLayout& layout);

@@ -5,6 +5,7 @@
 #include "api/csv/columns/column_facts.h"
 #include "api/csv/columns/column_pairs.h"
 #include "api/csv/columns/column_refusals.h"
+#include "api/csv/columns/loop_mode.h"
 #include "api/csv/columns/named_columns.h"
 
 namespace tunewright::api {
@@ -18,7 +19,7 @@ public:
 
     DetectedColumns find() {
         const std::array<const std::optional<ColumnChoice>*, kRoleCount> choices = {
-            &options_.columns.t, &options_.columns.u, &options_.columns.y, &options_.columns.r};
+            &options_.columns.t, &options_.columns.u, &options_.columns.y, &options_.columns.r, &options_.columns.mode};
         for (const ColumnRole role : kRoles) {
             if (*choices[role]) found_.at[role] = chosen_column(facts_, role, **choices[role], faults_);
         }
@@ -39,6 +40,7 @@ public:
         if (wanted(kTimeRole)) found_.spacing = spacing_above(facts_.text(), layout_);
         rest_by_content();
         find_reference();
+        find_mode();
         for (const ColumnRole role : {kTimeRole, kInputRole, kOutputRole}) {
             if (wanted(role)) faults_.push_back(missing_column(facts_, role));
         }
@@ -68,12 +70,20 @@ private:
         const bool numeric = p.numbers + p.missing > 0 && rare(p.stamps, p) && rare(p.switches, p) &&
                              (p.texts == 0 || facts_.holds_numbers(column));
         if (role == kReferenceRole) return numeric && p.numbers > 0 && !is_term(column);
+        if (role == kModeRole) return holds_modes(column);
         if (is_term(column)) return false;
         if (role == kInputRole && is_never_input(facts_.heading(column))) return false;
         if (role == kInputRole && facts_.switches(column))
             return !match(facts_.heading(column), kReferenceRole) &&
                    (!is_auxiliary(facts_.heading(column)) || is_state(facts_.heading(column)));
         return numeric && !is_auxiliary(facts_.heading(column));
+    }
+
+    /// Words, most of them known, or numbers whose meaning the heading gives.
+    bool holds_modes(std::size_t column) const {
+        const ColumnProfile& p = profiles_[column];
+        if (p.texts > 0) return 2 * p.modes > p.texts;
+        return p.numbers + p.switches > 0 && p.stamps == 0 && !mode_codes(facts_.heading(column)).empty();
     }
 
     /// True if no cell is of this kind, or so few that they are damaged cells.
@@ -248,6 +258,41 @@ private:
         if (r.best.empty()) return;
         found_.notes.push_back("Several columns may be the set point: " + facts_.shown(r.best) +
                                "; none is read. Choose one if it is needed.");
+    }
+
+    // The mode is optional too.
+    void find_mode() {
+        if (found_.at[kModeRole]) return check_mode(*found_.at[kModeRole]);
+        const NameFits mode = fits_by_name(facts_, kModeRole, [&](std::size_t column) {
+            return may_be(column, kModeRole) && is_of_this_loop(facts_.heading(column));
+        });
+        if (mode.best.size() == 1) return take(kModeRole, mode.best.front());
+        if (!mode.best.empty())
+            found_.notes.push_back("Several columns may be the mode of the loop: " + facts_.shown(mode.best) +
+                                   "; none is read. Choose one if it is needed.");
+        for (std::size_t i = 0; i < facts_.size() && mode.best.empty(); ++i) {
+            const bool codes = profiles_[i].numbers > 0 && profiles_[i].texts == 0 && !taken(i);
+            if (codes && match(facts_.heading(i), kModeRole)) found_.notes.push_back(codes_without_meaning(facts_, i));
+        }
+    }
+
+    // The tag of a mode is that of u, y or r, or these have none.
+    bool is_of_this_loop(const Heading& mode) const {
+        const std::string own = mode_stem(mode);
+        bool others = false;
+        for (const ColumnRole role : {kInputRole, kOutputRole, kReferenceRole}) {
+            const std::string tag = found_.at[role] ? stem(facts_.heading(*found_.at[role])) : "";
+            if (tag == own) return true;
+            others = others || !tag.empty();
+        }
+        return own.empty() || !others;
+    }
+
+    // Numbers of a chosen column need a meaning.
+    void check_mode(std::size_t column) {
+        const ColumnProfile& p = profiles_[column];
+        if (p.numbers > p.texts + p.switches && mode_codes(facts_.heading(column)).empty())
+            faults_.push_back(column_fault(kModeRole, codes_without_meaning(facts_, column)));
     }
 
     // A given step that replaces a u of the file would be at another time than the real one.

@@ -25,8 +25,8 @@ struct DetectedColumns {
     std::string unread;  ///< a sentence about columns that may be u if CsvOptions::u_step is given; "" for none
 };
 
-/// The columns of time, u, y and the set point r. Each step only decides roles that the previous steps left open. A
-/// role that stays open is a fault that lists the headings.
+/// The columns of time, u, y, the set point r and the mode. Each step only decides roles that the previous steps left
+/// open. A role that stays open is a fault that lists the headings.
 ///
 ///  1. The columns that the request names, with measured disturbances.
 ///  2. The controller's own terms (P, I, D) are excluded: none of them is u or y.
@@ -38,7 +38,7 @@ struct DetectedColumns {
 ///  6. A date and a time of day in two columns are joined.
 ///  7. By content, if headings do not decide: time holds stamps or rises; u switches or stays on its levels while y
 ///     moves; the only column left.
-///  8. The set point: reported if it is found, and never u or y.
+///  8. The set point and the mode of the loop: reported if they are found, and never u or y.
 ///  9. Checks: all roles found, none twice, one clock, no more headings than values.
 ///
 /// The order matters: a column that a later step takes by its content must not have been named before.

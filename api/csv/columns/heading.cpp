@@ -9,6 +9,7 @@
 
 #include "api/csv/cell.h"
 #include "api/csv/columns/heading_words.h"
+#include "api/csv/text.h"
 #include "api/csv/time_stamp.h"
 
 namespace tunewright::api {
@@ -67,16 +68,64 @@ std::optional<NameMatch> reference_match(const Heading& heading) {
     return found ? std::optional<NameMatch>(NameMatch{2, 0}) : std::nullopt;
 }
 
+constexpr std::string_view kModeWords[] = {"mode", "modus", "modo", "betriebsart"};
+constexpr std::string_view kModeStates[] = {"auto", "automatic", "automatik", "man", "manual", "hand"};
+constexpr std::string_view kModeLetters[] = {"a", "m", "h"};
+constexpr std::string_view kActual[] = {"actual", "act", "ist"};
+
+/// The words of a heading without those that name the mode at its end, and what these are.
+struct NamedMode {
+    enum What { none, actual_mode, mode, state } what = none;  ///< in the order of preference
+    std::vector<std::string> before;
+};
+
+NamedMode named_mode(const Heading& heading) {
+    // The mode that was asked for or is usual is not the mode.
+    static constexpr std::string_view kOther[] = {"target", "normal", "requested", "permitted", "desired"};
+    NamedMode named{.what = NamedMode::none, .before = heading.words};
+    std::vector<std::string>& words = named.before;
+    if (std::ranges::any_of(words, [](const auto& word) { return is_one_of(word, kOther); })) return named;
+    // The codes of "Mode 0=MAN 1=AUTO" name nothing, but "Auto=1" does.
+    for (std::string& word : words) word.resize(std::min(word.find('='), word.size()));
+    std::erase_if(words, [](const auto& word) { return word.empty() || is_digit(word.front()); });
+    const auto take_last = [&](const auto& known) {
+        const bool has = !words.empty() && is_one_of(words.back(), known);
+        if (has) words.pop_back();
+        return has;
+    };
+    bool actual = words.size() > 1 && take_last(kActual);
+    if (!actual && words.size() > 1 && is_one_of(words.front(), kActual)) actual = true, words.erase(words.begin());
+    if (words.size() > 1 && words.back() == "on") words.pop_back();  // AUTO_ON
+    if (take_last(kModeWords)) {
+        named.what = actual ? NamedMode::actual_mode : NamedMode::mode;
+    } else if (words.size() > 1 && heading.name.find('/') != heading.name.npos && take_last(kModeLetters)) {
+        if (take_last(kModeLetters)) named.what = NamedMode::mode;
+    } else if (take_last(kModeStates)) {
+        named.what = take_last(kModeStates) ? NamedMode::mode : NamedMode::state;
+    }
+    return named;
+}
+
+/// Matches "MODE", "TIC101.MODE.ACTUAL", "A/M", "Hand/Automatik", "TIC101.AUTO".
+std::optional<NameMatch> mode_match(const Heading& heading) {
+    const NamedMode named = named_mode(heading);
+    if (named.what == NamedMode::none) return std::nullopt;
+    static constexpr std::string_view kAnyLoop[] = {"loop", "pid", "controller", "control", "in", "is"};
+    const bool plain = std::ranges::all_of(named.before, [](const auto& word) { return is_one_of(word, kAnyLoop); });
+    return NameMatch{plain ? 1 : 2, named.what};
+}
+
 }  // namespace
 
 std::string role_name(ColumnRole role) {
-    constexpr std::array<const char*, kRoleCount + 1> kNames = {"t", "u", "y", "r", "d"};
+    constexpr std::array<const char*, kRoleCount + 1> kNames = {"t", "u", "y", "r", "mode", "d"};
     return kNames.at(role);
 }
 
 std::string role_meaning(ColumnRole role) {
-    constexpr std::array<const char*, kRoleCount + 1> kMeanings = {"time", "the controller output", "the measurement",
-                                                                   "the set point", "a measured disturbance"};
+    constexpr std::array<const char*, kRoleCount + 1> kMeanings = {
+        "time",          "the controller output", "the measurement",
+        "the set point", "the mode of the loop",  "a measured disturbance"};
     return kMeanings.at(role);
 }
 
@@ -98,6 +147,7 @@ Heading split_heading(std::string_view text) {
 
 std::optional<NameMatch> match(const Heading& heading, ColumnRole role) {
     if (role == kReferenceRole) return reference_match(heading);
+    if (role == kModeRole) return mode_match(heading);
     // A capital T is more likely a temperature than a time.
     constexpr int kLast = 1000;
     if (heading.name == "t" && heading.text.front() == 'T') {
@@ -284,6 +334,12 @@ std::string stem(const Heading& heading) {
     return out;
 }
 
+std::string mode_stem(const Heading& heading) {
+    std::string out;
+    for (const std::string& part : named_mode(heading).before) out += part + " ";
+    return out;
+}
+
 std::string number_behind(const Heading& heading) {
     if (heading.words.empty()) return {};
     const std::string& last = heading.words.back();
@@ -295,7 +351,7 @@ bool is_auxiliary(const Heading& heading) {
     static constexpr std::string_view kBeside[] = {
         "quality", "status", "mode",   "alarm", "validity", "qual", "comment",     "outside", "outdoor", "ambient",
         "event",   "auto",   "manual", "state", "flag",     "spt",  "linkquality", "rssi",    "lqi",     "snr"};
-    if (match(heading, kReferenceRole)) return true;
+    if (match(heading, kReferenceRole) || match(heading, kModeRole)) return true;
     return std::any_of(heading.words.begin(), heading.words.end(),
                        [](const std::string& word) { return is_one_of(word, kBeside); });
 }

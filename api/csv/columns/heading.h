@@ -10,13 +10,13 @@
 namespace tunewright::api {
 
 /// The columns of a record. The values are the indices of arrays with an element for each role.
-enum ColumnRole : std::size_t { kTimeRole, kInputRole, kOutputRole, kReferenceRole, kRoleCount };
+enum ColumnRole : std::size_t { kTimeRole, kInputRole, kOutputRole, kReferenceRole, kModeRole, kRoleCount };
 /// For any number of columns; they must be chosen.
 inline constexpr ColumnRole kDisturbanceRole = kRoleCount;
-constexpr std::array<ColumnRole, kRoleCount> kRoles = {kTimeRole, kInputRole, kOutputRole, kReferenceRole};
+constexpr std::array<ColumnRole, kRoleCount> kRoles = {kTimeRole, kInputRole, kOutputRole, kReferenceRole, kModeRole};
 
-std::string role_name(ColumnRole role);     ///< "t", "u", "y", "r" or "d"
-std::string role_meaning(ColumnRole role);  ///< "time", "the controller output", "the measurement" or "the set point"
+std::string role_name(ColumnRole role);     ///< "t", "u", "y", "r", "mode" or "d"
+std::string role_meaning(ColumnRole role);  ///< "time", "the controller output", "the measurement", ...
 
 struct Heading {
     std::string text;                ///< as written, trimmed
@@ -72,6 +72,9 @@ bool is_term_letter(const Heading& heading);
 
 /// The part of the heading before the word that names the role: "heater_bed.temp" and "heater_bed.pwm" belong together.
 std::string stem(const Heading& heading);
+
+/// The same of a heading that names a mode: "TIC101.MODE.ACTUAL" belongs to "TIC101.PV".
+std::string mode_stem(const Heading& heading);
 
 /// The number behind the last word of "heater 1" and "Temperature 1"; "" for none.
 std::string number_behind(const Heading& heading);

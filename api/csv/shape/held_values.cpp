@@ -41,11 +41,13 @@ void hold_input(CsvRecord& record) {
         record.u[kept] = u;
         record.y[kept] = record.y[i];
         if (!record.r.empty()) record.r[kept] = record.r[i];
+        if (!record.automatic.empty()) record.automatic[kept] = record.automatic[i];
         for (FurtherInput& input : record.d) input.values[kept] = input.values[i];
         record.lines[kept++] = record.lines[i];
     }
     for (auto* column : {&record.t, &record.u, &record.y}) column->resize(kept);
     if (!record.r.empty()) record.r.resize(kept);
+    if (!record.automatic.empty()) record.automatic.resize(kept);
     for (FurtherInput& input : record.d) input.values.resize(kept);
     record.lines.resize(kept);
 }

@@ -80,7 +80,7 @@ private:
                         listed_kinds();
         };
         for (const auto& [role, choice] :
-             {std::pair{"t", &chosen.t}, {"u", &chosen.u}, {"y", &chosen.y}, {"r", &chosen.r}})
+             {std::pair{"t", &chosen.t}, {"u", &chosen.u}, {"y", &chosen.y}, {"r", &chosen.r}, {"mode", &chosen.mode}})
             if (*choice) take(role, **choice);
         for (std::size_t i = 0; i < chosen.d.size(); ++i) take("d/" + std::to_string(i), chosen.d[i]);
     }

@@ -150,6 +150,7 @@ void keep_rows(CsvRecord& record, const RowRun& run) {
     keep(record.u);
     keep(record.y);
     keep(record.r);
+    keep(record.automatic);
     for (FurtherInput& input : record.d) keep(input.values);
     keep(record.lines);
 }

@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
-#include "engine/identification/closed_loop/controller_law.h"
 #include "engine/identification/closed_loop/feedback.h"
 #include "engine/identification/closed_loop/instrument_fit.h"
+#include "engine/identification/closed_loop/recognised_law.h"
 #include "engine/identification/fit/diagnosis.h"
 #include "engine/identification/fit/model_answer.h"
 #include "engine/identification/fit/model_search.h"
@@ -158,7 +158,7 @@ bool is_inverse_of_law(const CleanRecord& record, const IdentifiedModel& model) 
     const std::span all_u(u), all_y(record.y);
     // A plant that is fast compared with the sampling shows u one row later.
     if (left_by_line(all_y.last(u.size() - 1), all_u.first(u.size() - 1)) < left_by_line(all_y, all_u)) return false;
-    const std::optional<ControllerLaw> law = controller_law(record, u, {});
+    const std::optional<RecognisedLaw> law = recognised_law(record, u, {});
     const auto* lag = std::get_if<Fopdt>(&model.plant);
     const double unit = record.scale.y_scale / record.scale.u_scale;
     return law && lag != nullptr && std::abs(law->gain * lag->K / unit - 1) < kMaxGainProductError;

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
-#include "engine/identification/closed_loop/controller_law.h"
 #include "engine/identification/closed_loop/feedback.h"
 #include "engine/identification/closed_loop/loop_parts.h"
-#include "engine/identification/closed_loop/outside_excitation.h"
+#include "engine/identification/closed_loop/recognised_law.h"
 #include "engine/identification/record/record_kind.h"
 #include "engine/number_text.h"
 
@@ -39,17 +39,22 @@ int moves_of(const std::vector<double>& r) {
     return moves;
 }
 
+HeldColumn mode_of(const Record& record) {
+    return held_column(record.t, {record.automatic.begin(), record.automatic.end()});
+}
+
 /// A law that explains u much better than u explains y.
 struct PlainLaw {
     double gain = 0;
     std::string evidence;
 };
 
-std::optional<PlainLaw> plain_law(const CleanRecord& record, const SetPoint& set_point,
+std::optional<PlainLaw> plain_law(const CleanRecord& record, const Record& as_given, const SetPoint& set_point,
                                   const std::optional<double>& left_by_model) {
     constexpr double kOfFreePlant = 0.25, kOfModel = 0.5;
     const std::vector<double> u = input_at_samples(record);
-    const std::optional<ControllerLaw> law = controller_law(record, u, set_point.at_samples);
+    const std::optional<RecognisedLaw> law =
+        recognised_law(record, u, set_point.at_samples, at_samples(mode_of(as_given), record));
     // u over y alone also looks like this for a plant that is fast compared with its input.
     if (!law || law->integral == 0) return std::nullopt;
     const double left_of_y = left_by_model ? *left_by_model : left_by_free_plant(record, u);
@@ -97,23 +102,33 @@ double u_span(const CleanRecord& r) {
 
 }  // namespace
 
+IdentifiedLoop identified_loop(CleanRecord clean, SetPoint set_point, const Record& record) {
+    const bool none = set_point.at_samples.empty();
+    return {.clean = std::move(clean),
+            .set_point = none ? HeldColumn{} : std::move(set_point.column),
+            .automatic = mode_of(record),
+            .switched_on = set_point.on.has_value()};
+}
+
 CleanRecord looked_at_for_feedback(const CleanRecord& record) {
     return record.samples() <= kMaxSeen ? record : first_part(record, record.t[static_cast<std::size_t>(kMaxSeen - 1)]);
 }
 
 Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Record& as_given,
                                               std::optional<double> left_by_model) {
-    if (!as_given.r.empty() && as_given.r.size() != as_given.t.size()) {
-        return Error{ErrorKind::invalid_argument, "record/r",
-                     "r has " + std::to_string(as_given.r.size()) + " values and t " +
+    for (const auto& [name, size] : {std::pair{"r", as_given.r.size()}, {"mode", as_given.automatic.size()}}) {
+        if (size == 0 || size == as_given.t.size()) continue;
+        return Error{ErrorKind::invalid_argument, std::string("record/") + name,
+                     std::string(name) + " has " + std::to_string(size) + " values and t " +
                          std::to_string(as_given.t.size()) + "; give columns of equal length."};
     }
     const RecordKind kind = full.kind == RecordKind::automatic ? found_kind(full) : full.kind;
     if (kind == RecordKind::relay) return std::optional<LoopRecord>{};
     const CleanRecord seen = looked_at_for_feedback(full), record = condensed(full, kMaxLoopSamples);
     const std::optional<Feedback> feedback = find_feedback(seen);
-    const SetPoint set_point = set_point_of(record, as_given);
     LoopRecord loop;
+    loop.set_point = set_point_of(record, as_given);
+    const SetPoint& set_point = loop.set_point;
     if (!set_point.at_samples.empty()) loop.found.set_point_moves = moves_of(set_point.at_samples);
     std::vector<OutsideMove> kicks;
     if (feedback) kicks = of_whole_record(feedback->outside, seen.scale.t_scale / full.scale.t_scale);
@@ -126,7 +141,7 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Rec
     } else if (follows) {
         loop.found.evidence = by_set_point(*loop.part);
     } else if (may_be_controlled(seen)) {
-        const std::optional<PlainLaw> law = plain_law(record, set_point, left_by_model);
+        const std::optional<PlainLaw> law = plain_law(record, as_given, set_point, left_by_model);
         if (!law) return std::optional<LoopRecord>{};
         loop.found.evidence = law->evidence;
         loop.gain = law->gain;

@@ -5,7 +5,6 @@
 #include <optional>
 #include <span>
 
-#include "engine/identification/closed_loop/loop_parts.h"
 #include "engine/identification/record/series.h"
 #include "engine/numerics/statistics.h"
 
@@ -42,23 +41,10 @@ bool commands(std::span<const double> r, std::span<const double> u) {
     return false;
 }
 
-std::vector<double> column_at_samples(const CleanRecord& clean, const Record& record) {
-    std::vector<std::pair<double, double>> known;
-    for (std::size_t i = 0; i < record.r.size(); ++i) {
-        if (std::isfinite(record.t[i]) && std::isfinite(record.r[i])) known.emplace_back(record.t[i], record.r[i]);
-    }
-    if (known.empty()) return {};
-    std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    const RecordScale& s = clean.scale;
-    constexpr double kTimeTolerance = 1e-9;  // of the record's length
-    std::vector<double> r;
-    std::size_t next = 0;
-    double now = known.front().second;
-    for (int i = 0; i < clean.samples(); ++i) {
-        const double t = s.t_origin + s.t_scale * (clean.t[i] + kTimeTolerance);
-        for (; next < known.size() && known[next].first <= t; ++next) now = known[next].second;
-        r.push_back((now - s.y_origin) / s.y_scale);
-    }
+/// In the dimensionless unit of y.
+std::vector<double> scaled_at_samples(const HeldColumn& column, const CleanRecord& record) {
+    std::vector<double> r = at_samples(column, record);
+    for (double& value : r) value = (value - record.scale.y_origin) / record.scale.y_scale;
     return r;
 }
 
@@ -103,20 +89,24 @@ std::optional<double> rest_at_first_row(const CleanRecord& record, const std::ve
 
 SetPoint set_point_of(const CleanRecord& record, const Record& as_given) {
     SetPoint out;
-    out.at_samples = column_at_samples(record, as_given);
+    out.column = held_column(as_given.t, as_given.r);
+    out.at_samples = scaled_at_samples(out.column, record);
+    out.on = switched_on(record, out.at_samples);
     if (out.at_samples.empty()) return out;
     const std::span<const double> r(out.at_samples), y(record.y);
     out.is_input = commands(r, input_at_samples(record));
-    const std::optional<SwitchOn> on = switched_on(record, out.at_samples);
-    const std::size_t from = on ? static_cast<std::size_t>(on->row) : 0;
-    if (out.is_input || tracks(r.subspan(from), y.subspan(from))) out.at_samples.clear();
+    const std::size_t from = out.on ? static_cast<std::size_t>(out.on->row) : 0;
+    if (out.is_input || tracks(r.subspan(from), y.subspan(from))) {
+        out.at_samples.clear();
+        out.on = switched_on(record, {});
+    }
     for (std::size_t i = from + 1; i < out.at_samples.size() && !out.moves; ++i)
         out.moves = out.at_samples[i] != out.at_samples[i - 1];
     return out;
 }
 
 bool set_point_is_input(const CleanRecord& record, const Record& as_given) {
-    const std::vector<double> r = column_at_samples(record, as_given);
+    const std::vector<double> r = scaled_at_samples(held_column(as_given.t, as_given.r), record);
     return !r.empty() && commands(r, input_at_samples(record));
 }
 
@@ -124,7 +114,7 @@ std::vector<OutsideExcitation> outside_excitations(const CleanRecord& record, co
                                                    const std::vector<OutsideMove>& kicks) {
     const std::vector<double>& r = set_point.at_samples;
     const auto rows = static_cast<std::size_t>(record.samples());
-    const std::optional<SwitchOn> on = switched_on(record, r);
+    const std::optional<SwitchOn>& on = set_point.on;
     std::vector<OutsideExcitation> found;
     if (on) {
         const LoopExcitation kind = set_point.moves ? LoopExcitation::set_point : LoopExcitation::switched_on;

@@ -1,10 +1,13 @@
 // Moves of u in a loop's record that are not feedback: by the set point, by switching the controller on, kicks of u.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/identification/closed_loop/feedback.h"
+#include "engine/identification/closed_loop/loop_parts.h"
 #include "engine/identification/identify.h"
+#include "engine/identification/record/held_column.h"
 
 namespace tunewright {
 
@@ -19,7 +22,9 @@ struct OutsideExcitation {
 
 /// The set point of a record, if column r is one.
 struct SetPoint {
+    HeldColumn column;               ///< as given
     std::vector<double> at_samples;  ///< dimensionless like y; empty: none
+    std::optional<SwitchOn> on;      ///< with this set point
     bool moves = false;
     bool is_input = false;  ///< column r is u itself, or u is a straight line over it: it commands u and does not
                             ///< respond to y

@@ -43,7 +43,7 @@ std::optional<Error> fault_of(const Record& record, const ControllerRecordOption
     const std::size_t n = record.t.size();
     if (record.u.size() != n || record.y.size() != n || (!record.r.empty() && record.r.size() != n))
         return Error{ErrorKind::invalid_argument, "record", "t, u, y and r must have equal lengths.", {}};
-    if (!options.automatic.empty() && options.automatic.size() != n)
+    if (!record.automatic.empty() && record.automatic.size() != n)
         return Error{ErrorKind::invalid_argument, "record/mode", "mode must be as long as t.", {}};
     if (options.sample_time && !(*options.sample_time > 0))
         return Error{ErrorKind::invalid_argument,
@@ -89,7 +89,7 @@ struct LawOfRecord {
 
 Expected<LawOfRecord> law_of_record(const Record& record, const ControllerRecordOptions& options) {
     LawOfRecord out;
-    LawSamples& s = out.samples = law_samples(record, options.automatic);
+    LawSamples& s = out.samples = law_samples(record);
     const auto too_few = [&](int rows) {
         return refused("The record has " + std::to_string(rows) +
                        " rows in which the controller moves u in automatic; " + std::to_string(kLimits.min_increments) +

@@ -15,7 +15,6 @@
 namespace tunewright {
 
 struct ControllerRecordOptions {
-    std::vector<bool> automatic = {};        ///< of each row of the record; empty: found from u
     std::optional<double> sample_time = {};  ///< of the controller, record's unit, > 0; empty: found or unknown
     IntegralRule integral = IntegralRule::backward;
     std::optional<FilterType> filter = {};  ///< of the controller: taken among laws that are as good
@@ -41,7 +40,8 @@ struct IdentifiedController {
     std::vector<Warning> warnings;                        ///< controller-uncertain
 };
 
-/// 1. Samples: where u is a staircase over the rows, its steps; rows in manual and at the ends of u are left out.
+/// 1. Samples: where u is a staircase over the rows, its steps; rows in manual (by the record's mode, else where u
+/// stands still against the law) and at the ends of u are left out.
 /// 2. For each delay (none, part of a row, one row, one sample), filter (none, of the derivative, of the measurement)
 ///    and error model (theta) the structures P, PI, PD and PID are fitted by generalised least squares
 ///    (law_regression.h); the least Bayesian information criterion decides. Tf is on a grid, then refined.

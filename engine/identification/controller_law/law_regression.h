@@ -18,9 +18,9 @@
 
 namespace tunewright {
 
-/// Columns of the regression; `kLawTarget` is du.
-enum LawColumn { kLawP, kLawSetPoint, kLawI, kLawD, kLawSetPointD, kLawFilter, kLawTarget };
-inline constexpr int kLawColumns = 7;
+/// Columns of the regression; `kLawLevel` is h, the column of Ki r0; `kLawTarget` is du.
+enum LawColumn { kLawP, kLawSetPoint, kLawI, kLawD, kLawSetPointD, kLawFilter, kLawLevel, kLawTarget };
+inline constexpr int kLawColumns = 8;
 using LawColumns = std::array<std::vector<double>, kLawColumns>;
 
 enum class LawFilter { none, derivative, measurement };
@@ -34,7 +34,7 @@ struct LawShape {
     bool between = false;  ///< the controller computes between the rows too: y and r run on straight lines there
 };
 
-/// The columns' increments, sample by sample; the first is 0. Column kLawFilter is not filled.
+/// The columns' increments, sample by sample; the first is 0. Not filled: kLawFilter, kLawLevel.
 LawColumns law_columns(const LawSamples& samples, const LawShape& shape);
 
 /// Whether the increment that ends at each sample is the law's own.

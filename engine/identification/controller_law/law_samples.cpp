@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
+#include "engine/identification/record/record_rows.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
@@ -20,15 +22,13 @@ constexpr double kMinShareInStep = 0.99, kMinEvidence = 20;
 // In rows: where a period's moves may lie (stamps are rounded and jitter); the least period that is a staircase.
 constexpr double kRowOfMoves = 1.05, kMinPeriod = 1.2;
 
-struct AllRows {
-    std::vector<double> t, u, y, r;
-    std::vector<char> manual;
-};
-
-AllRows rows_with_numbers(const Record& record, const std::vector<bool>& automatic) {
-    AllRows rows;
+LawRows rows_with_numbers(const Record& record) {
+    LawRows rows;
     double last = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = record.t.size() - std::min(record.t.size(), kMaxRows); i < record.t.size(); ++i) {
+    const std::size_t n = record.t.size();
+    const bool newest_first = times_fall(record);
+    for (std::size_t k = n - std::min(n, kMaxRows); k < n; ++k) {
+        const std::size_t i = newest_first ? n - 1 - k : k;
         const bool set = record.r.empty() || std::isfinite(record.r[i]);
         if (!std::isfinite(record.t[i]) || !std::isfinite(record.u[i]) || !std::isfinite(record.y[i]) || !set) continue;
         if (record.t[i] <= last) continue;
@@ -37,7 +37,7 @@ AllRows rows_with_numbers(const Record& record, const std::vector<bool>& automat
         rows.u.push_back(record.u[i]);
         rows.y.push_back(record.y[i]);
         if (!record.r.empty()) rows.r.push_back(record.r[i]);
-        rows.manual.push_back(!automatic.empty() && !automatic[i]);
+        rows.manual.push_back(!record.automatic.empty() && !record.automatic[i]);
     }
     return rows;
 }
@@ -88,7 +88,7 @@ std::optional<std::array<double, 2>> periods_in_step(const std::vector<double>& 
     return found;
 }
 
-Staircase staircase_of(const AllRows& rows) {
+Staircase staircase_of(const LawRows& rows) {
     std::vector<double> moves, apart;
     for (std::size_t i = 1; i < rows.u.size() && moves.size() < kMaxMovesForPeriod; ++i)
         if (rows.u[i] != rows.u[i - 1] && !rows.manual[i]) moves.push_back(static_cast<double>(i));
@@ -116,7 +116,7 @@ Staircase staircase_of(const AllRows& rows) {
     return {period, step.phase * period};
 }
 
-void take(LawSamples& out, const AllRows& rows, std::size_t i, double t) {
+void take(LawSamples& out, const LawRows& rows, std::size_t i, double t) {
     out.t.push_back(t);
     out.u.push_back(rows.u[i]);
     out.y.push_back(rows.y[i]);
@@ -126,14 +126,16 @@ void take(LawSamples& out, const AllRows& rows, std::size_t i, double t) {
 }
 
 void leave_ends_out(LawSamples& s) {
-    const auto [low, high] = std::ranges::minmax(s.u);
     const std::size_t n = s.u.size();
     s.limited.assign(n, 0);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t i = 0; i < n; ++i)
+        if (!s.excluded[i]) low = std::min(low, s.u[i]), high = std::max(high, s.u[i]);
     for (const double end : {low, high}) {
         std::size_t longest = 0;
         for (std::size_t i = 0; i < n;) {
             std::size_t to = i;
-            while (to < n && s.u[to] == end) ++to;
+            while (to < n && s.u[to] == end && !s.excluded[to]) ++to;
             longest = std::max(longest, to - i);
             i = std::max(to, i + 1);
         }
@@ -145,7 +147,6 @@ void leave_ends_out(LawSamples& s) {
 
 void mark_still_stretches(LawSamples& s) {
     const std::size_t n = s.u.size();
-    s.still.assign(n, 0);
     for (std::size_t i = 0; i < n;) {
         std::size_t to = i + 1;
         while (to < n && s.u[to] == s.u[i]) ++to;
@@ -153,6 +154,40 @@ void mark_still_stretches(LawSamples& s) {
             std::fill(s.still.begin() + static_cast<long>(i), s.still.begin() + static_cast<long>(to), 1);
         i = to;
     }
+}
+
+/// The mean of the usual spacings: a clock that rounds its stamps has no other that is right.
+double row_time_of(const std::vector<double>& t) {
+    std::vector<double> apart(t.size() - 1);
+    for (std::size_t i = 1; i < t.size(); ++i) apart[i - 1] = t[i] - t[i - 1];
+    const double usual = median(apart);
+    double sum = 0, number = 0;
+    for (const double spacing : apart)
+        if (spacing > 0.5 * usual && spacing < 1.5 * usual) sum += spacing, ++number;
+    return number > 0 ? sum / number : usual;
+}
+
+LawSamples sampled(LawRows rows, const Staircase& stairs) {
+    LawSamples out;
+    if (rows.t.size() < 2) return out;
+    const double row_time = row_time_of(rows.t);
+    if (stairs.period <= 1) {
+        for (std::size_t i = 0; i < rows.t.size(); ++i) take(out, rows, i, rows.t[i]);
+    } else {
+        for (double at = stairs.first; at < static_cast<double>(rows.t.size()); at += stairs.period) {
+            const auto i = static_cast<std::size_t>(std::max(0.0, std::ceil(at - 1e-6)));
+            if (i >= rows.t.size()) break;
+            take(out, rows, i, rows.t.front() + at * row_time);
+        }
+    }
+    out.rows_y = std::move(rows.y);
+    out.rows_r = std::move(rows.r);
+    out.rows_per_sample = stairs.period;
+    out.period = row_time * stairs.period;
+    for (const char m : out.excluded) out.manual_rows += m;
+    out.still.assign(out.u.size(), 0);
+    if (out.size() > 0) leave_ends_out(out);
+    return out;
 }
 
 }  // namespace
@@ -176,37 +211,15 @@ double rounding_step(std::vector<double> values) {
     return 0;
 }
 
-LawSamples law_samples(const Record& record, const std::vector<bool>& automatic) {
-    const AllRows rows = rows_with_numbers(record, automatic);
-    LawSamples out;
-    if (rows.t.size() < 2) return out;
-    std::vector<double> apart(rows.t.size() - 1);
-    for (std::size_t i = 1; i < rows.t.size(); ++i) apart[i - 1] = rows.t[i] - rows.t[i - 1];
-    // The mean of the usual spacings: a clock that rounds its stamps has no other that is right.
-    const double usual = median(apart);
-    double sum = 0, number = 0;
-    for (const double spacing : apart)
-        if (spacing > 0.5 * usual && spacing < 1.5 * usual) sum += spacing, ++number;
-    const double row_time = number > 0 ? sum / number : usual;
-    out.rows_y = rows.y;
-    out.rows_r = rows.r;
+LawSamples each_row(LawRows rows) { return sampled(std::move(rows), {}); }
+
+LawSamples law_samples(const Record& record) {
+    LawRows rows = rows_with_numbers(record);
     const Staircase stairs = staircase_of(rows);
-    out.rows_per_sample = stairs.period;
-    if (stairs.period <= 1) {
-        for (std::size_t i = 0; i < rows.t.size(); ++i) take(out, rows, i, rows.t[i]);
-    } else {
-        for (double at = stairs.first; at < static_cast<double>(rows.t.size()); at += stairs.period) {
-            const auto i = static_cast<std::size_t>(std::max(0.0, std::ceil(at - 1e-6)));
-            if (i >= rows.t.size()) break;
-            take(out, rows, i, rows.t.front() + at * row_time);
-        }
-    }
-    out.period = row_time * stairs.period;
+    LawSamples out = sampled(std::move(rows), stairs);
     out.u_step = rounding_step(out.u);
     out.y_step = rounding_step(out.y);
-    for (const char m : out.excluded) out.manual_rows += m;
-    if (out.size() > 0) leave_ends_out(out);
-    mark_still_stretches(out);
+    if (record.automatic.empty()) mark_still_stretches(out);
     return out;
 }
 

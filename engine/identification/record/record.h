@@ -22,12 +22,14 @@ struct FurtherInput {
 inline constexpr int kMaxFurtherInputs = 4;
 
 /// Samples in time order as exported (NaN where a number is missing); u[i] holds from t[i] until t[i+1] (zero-order
-/// hold). t, u and y have equal lengths; r and line are empty or as long.
+/// hold). t, u and y have equal lengths; r, automatic and line are empty or as long.
 struct Record {
     std::vector<double> t;       ///< time in the user's unit, any start
     std::vector<double> u;       ///< controller output (plant input)
     std::vector<double> y;       ///< measurement
     std::vector<double> r = {};  ///< set point, in y's unit, a number in each row; empty: none
+    /// The loop's mode in each row: true in automatic and in cascade; empty: not recorded.
+    std::vector<bool> automatic = {};
     RecordKind kind = RecordKind::automatic;
     std::optional<double> u0, y0;  ///< values before the first sample, in the record's units
 

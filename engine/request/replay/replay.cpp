@@ -67,12 +67,12 @@ RecordReplayer::RecordReplayer(const TuningRequest& request, const IdentifiedMod
     : request_(request), model_(model) {
     record_.refused = refusal();
     if (record_.refused) return;
-    auto loop = recorded_loop(*request.record);
-    if (!loop || loop->manual) {
-        record_.refused = loop ? ReplayRefusal::manual_rows : ReplayRefusal::no_set_point;
+    auto rows = rows_in_automatic(*model.loop);
+    if (!rows) {
+        record_.refused = ReplayRefusal::manual_rows;
         return;
     }
-    rows_ = std::move(loop->rows);
+    rows_ = *std::move(rows);
     record_.from = rows_.t0;
     record_.to = rows_.t0 + rows_.h * static_cast<double>(rows_.size() - 1);
     take_limits();
@@ -91,7 +91,7 @@ RecordReplayer::RecordReplayer(const TuningRequest& request, const IdentifiedMod
 std::optional<ReplayRefusal> RecordReplayer::refusal() const {
     if (!model_.data_quality.closed_loop) return ReplayRefusal::manual;
     if (model_.data_quality.closed_loop->used == LoopExcitation::none) return ReplayRefusal::feedback;
-    if (request_.record->r.empty()) return ReplayRefusal::no_set_point;
+    if (!model_.loop || model_.loop->set_point.empty()) return ReplayRefusal::no_set_point;
     if (reason_of_doubt(model_) &&
         std::ranges::any_of(model_.warnings, [](const Warning& warning) { return warning.level == WarningLevel::bad; }))
         return ReplayRefusal::doubtful_model;

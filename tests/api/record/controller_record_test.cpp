@@ -101,6 +101,38 @@ TEST(ControllerRecord, WhatTheRecordDoesNotShowIsAsTheProductHasIt) {
     EXPECT_EQ(deltav["standard_errors"].size(), 2u) << deltav["standard_errors"].dump();
 }
 
+TEST(ControllerRecord, LeavesRowsInManualOutByTheMode) {
+    Json record = closed_loop();
+    Json mode = Json::array();
+    // An operator moves u with every row: it does not stand still.
+    for (int k = 0; k < 400; ++k) {
+        const bool manual = k >= 150 && k < 250;
+        if (manual) record["u"][k] = 30 + 0.2 * std::sin(0.3 * k);
+        mode.push_back(manual ? "MAN" : k < 150 ? "AUTO" : k == 250 ? "CAS" : "");
+    }
+    record["mode"] = mode;
+    const Json found = answered({{"record", record}})["identified"];
+    EXPECT_NEAR(found["controller"]["Kp"].get<double>(), 1.5, 1e-5);
+    EXPECT_NEAR(found["controller"]["Ti"].get<double>(), 18, 1e-4);
+    EXPECT_EQ(found["manual_rows"], 100);
+    EXPECT_TRUE(found["certain"].get<bool>());
+    EXPECT_TRUE(found["warnings"].empty()) << found["warnings"].dump();
+
+    for (Json& word : mode)
+        if (word == "MAN") word = "HOLD";
+    record["mode"] = mode;
+    const Json unknown = answered({{"record", record}})["identified"];
+    EXPECT_EQ(unknown["manual_rows"], 100);
+    ASSERT_EQ(unknown["warnings"].size(), 1u) << unknown.dump();
+    EXPECT_EQ(unknown["warnings"][0]["code"], "unknown-mode");
+
+    mode.erase(399);
+    record["mode"] = mode;
+    const Answer shorter = controller_record_call(Json{{"record", record}}.dump(), {});
+    EXPECT_EQ(shorter.status, 422);
+    EXPECT_NE(shorter.body.find("mode has 399 words and y 400"), std::string::npos) << shorter.body;
+}
+
 TEST(ControllerRecord, SaysWhyARecordShowsNoSettings) {
     const Json few = answered({{"record", closed_loop(60)}});
     EXPECT_EQ(schema_faults(few, "ControllerRecordAnswer"), std::vector<std::string>{});

@@ -173,9 +173,9 @@ SimulatedController random_controller(int seed) {
     return l;
 }
 
-SimulatedControllerRecord recorded(const SimulatedController& l, int seed) {
+Record recorded(const SimulatedController& l, int seed) {
     Random random(static_cast<std::uint64_t>(seed) + 7777777);
-    SimulatedControllerRecord out;
+    Record out;
     const double centre = 50, u_rest = 40;
     std::vector<double> at, level;
     for (int i = 0; i < l.set_point_steps; ++i) {
@@ -206,13 +206,13 @@ SimulatedControllerRecord recorded(const SimulatedController& l, int seed) {
     for (long k = 0; static_cast<double>(k) * dt <= l.duration; ++k) {
         const double t = static_cast<double>(k) * dt;
         const auto keep_row = [&] {
-            out.record.t.push_back(next_row);
-            out.record.u.push_back(rounded(u_rest + (l.late_by_one_row ? u_before : u), l.u_record_rounding));
+            out.t.push_back(next_row);
+            out.u.push_back(rounded(u_rest + (l.late_by_one_row ? u_before : u), l.u_record_rounding));
             u_before = u;
             const double shown =
                 l.raw_sensor ? rounded(centre + x2 + l.noise * random.normal(), l.y_resolution) : y_read;
-            out.record.y.push_back(rounded(shown, l.y_record_rounding));
-            if (l.with_set_point) out.record.r.push_back(r);
+            out.y.push_back(rounded(shown, l.y_record_rounding));
+            if (l.with_set_point) out.r.push_back(r);
             if (l.with_mode) out.automatic.push_back(automatic);
             next_row += l.row_time;
         };

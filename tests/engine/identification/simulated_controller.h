@@ -53,12 +53,7 @@ struct SimulatedController {
 
 SimulatedController random_controller(int seed);
 
-struct SimulatedControllerRecord {
-    Record record;
-    std::vector<bool> automatic;  ///< of each row; empty unless `with_mode`
-};
-
-SimulatedControllerRecord recorded(const SimulatedController& loop, int seed);
+Record recorded(const SimulatedController& loop, int seed);
 
 /// "PI velocity, Ts T/20, rows coarser, limits".
 std::string described(const SimulatedController& loop);

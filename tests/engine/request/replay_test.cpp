@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "engine/request/replay/loop_rows.h"
@@ -30,8 +31,13 @@ Record as_record(const LoopRows& rows) {
     return record;
 }
 
+std::shared_ptr<const IdentifiedLoop> loop_of(const Record& record) {
+    const CleanRecord clean = *clean_record(record);
+    return std::make_shared<const IdentifiedLoop>(identified_loop(clean, set_point_of(clean, record), record));
+}
+
 /// What identification would say of it, with these relative standard errors of K, T and L.
-IdentifiedModel model_of(const Fopdt& plant, double error) {
+IdentifiedModel model_without_rows(const Fopdt& plant, double error) {
     IdentifiedModel model;
     model.plant = plant;
     model.fit_percent = 95;
@@ -61,6 +67,11 @@ protected:
         return request;
     }();
 
+    IdentifiedModel model_of(const Fopdt& plant, double error) const {
+        IdentifiedModel model = model_without_rows(plant, error);
+        model.loop = loop_of(*request_.record);
+        return model;
+    }
     std::optional<ReplayRefusal> refused(const IdentifiedModel& model) const {
         return RecordReplayer(request_, model).record().refused;
     }
@@ -142,7 +153,9 @@ TEST_F(Replayed, RefusesWhatSaysNothingOfTheSettings) {
     EXPECT_EQ(refused(noisy), ReplayRefusal::no_error);
 
     request_.record->r.clear();
-    EXPECT_EQ(refused(good), ReplayRefusal::no_set_point);
+    EXPECT_EQ(refused(model_of(kTrue, 0.03)), ReplayRefusal::no_set_point);
+    request_.record->r = request_.record->y;
+    EXPECT_EQ(refused(model_of(kTrue, 0.03)), ReplayRefusal::no_set_point) << "column r follows y";
 }
 
 // Limits of u keep an unstable loop within bounds: it is the loop that decides, not how far y goes.
@@ -184,18 +197,49 @@ TEST_F(Replayed, RefusesARecordWithAPartInManual) {
     EXPECT_EQ(refused(model_of(kTrue, 0.03)), ReplayRefusal::manual_rows);
 }
 
+// The column of the mode decides: what looks like manual may be a controller at its limit or one that rests.
+TEST_F(Replayed, TakesTheLongestStretchInAutomaticByTheMode) {
+    Record& record = *request_.record;
+    for (std::size_t k = 300; k < 400; ++k) {
+        record.u[k] = record.u[300];
+        record.y[k] += 4;
+    }
+    record.automatic.assign(record.t.size(), true);
+    EXPECT_FALSE(refused(model_of(kTrue, 0.03))) << "in automatic throughout";
+    for (std::size_t k = 300; k < 400; ++k) record.automatic[k] = false;
+    record.automatic[1450] = false;
+    const IdentifiedModel model = model_of(kTrue, 0.03);
+    const RecordReplayer replayer(request_, model);
+    ASSERT_FALSE(replayer.record().refused);
+    EXPECT_NEAR(replayer.record().from, 100 + 400 * kRow, 1e-6);
+    EXPECT_NEAR(replayer.record().to, 100 + 1449 * kRow, 1e-6);
+    double IAE = 0;
+    for (std::size_t k = 400; k < 1450; ++k) IAE += kRow * std::abs(record.r[k] - record.y[k]);
+    EXPECT_NEAR(replayer.record().figures.IAE, IAE, 0.02 * IAE);
+    // The settings of the record are the record, from the first row in automatic on.
+    const auto replay = replayer.of(entry_of(kUsed));
+    ASSERT_TRUE(replay && !replay->refused);
+    EXPECT_NEAR(replay->IAE_ratio, 1, 0.03);
+
+    record.automatic.assign(record.t.size(), false);
+    EXPECT_EQ(refused(model_of(kTrue, 0.03)), ReplayRefusal::manual_rows);
+    for (std::size_t k = 0; k < kMinReplayRows; ++k) record.automatic[700 + k] = true;
+    EXPECT_NE(refused(model_of(kTrue, 0.03)), ReplayRefusal::manual_rows);
+    record.automatic[700] = false;
+    EXPECT_EQ(refused(model_of(kTrue, 0.03)), ReplayRefusal::manual_rows);
+}
+
 // Of a long record the last rows are replayed at their own spacing: a wider one would be another loop.
-TEST(RecordedLoop, OfALongRecordTheLastRowsStayAtTheirSpacing) {
+TEST(LoopRows, OfALongRecordTheLastRowsStayAtTheirSpacing) {
     const auto hour = test::eventful_hour(30'000, kRow);
     const LoopRows rows = own_loop(kTrue, kUsed, hour, 35);
-    const auto loop = recorded_loop(as_record(rows));
+    const auto loop = rows_in_automatic(*loop_of(as_record(rows)));
     ASSERT_TRUE(loop);
-    EXPECT_FALSE(loop->manual);
-    ASSERT_EQ(loop->rows.size(), std::size_t{kMaxReplayRows});
-    EXPECT_NEAR(loop->rows.h, kRow, 1e-9);
-    EXPECT_NEAR(loop->rows.t0, 100 + 10'000 * kRow, 1e-6);
-    EXPECT_NEAR(loop->rows.y.back(), rows.y.back(), 1e-6);
-    EXPECT_NEAR(loop->rows.y.front(), rows.y[10'000], 1e-6);
+    ASSERT_EQ(loop->size(), std::size_t{kMaxReplayRows});
+    EXPECT_NEAR(loop->h, kRow, 1e-9);
+    EXPECT_NEAR(loop->t0, 100 + 10'000 * kRow, 1e-6);
+    EXPECT_NEAR(loop->y.back(), rows.y.back(), 1e-6);
+    EXPECT_NEAR(loop->y.front(), rows.y[10'000], 1e-6);
 }
 
 // Between two rows of a fast plant a controller would have to act.
@@ -220,9 +264,8 @@ TEST(LoopRows, PutARecordOnEvenRows) {
         record.y.push_back(k == 25 ? none : 2 + 0.25 * k);
         record.r.push_back(k < 10 ? 4 : 6);
     }
-    const auto loop = recorded_loop(record);
-    ASSERT_TRUE(loop);
-    const LoopRows* rows = &loop->rows;
+    const auto rows = rows_in_automatic(*loop_of(record));
+    ASSERT_TRUE(rows);
     ASSERT_EQ(rows->size(), 40u);
     EXPECT_NEAR(rows->h, 0.5, 1e-9);
     for (std::size_t k = 0; k < 40; ++k) {
@@ -230,8 +273,6 @@ TEST(LoopRows, PutARecordOnEvenRows) {
         EXPECT_NEAR(rows->u[k], k < 20 ? 3 : 7, 1e-9);
         EXPECT_EQ(rows->r[k], k < 10 ? 4 : 6);
     }
-    record.r.clear();
-    EXPECT_FALSE(recorded_loop(record));
 }
 
 }  // namespace

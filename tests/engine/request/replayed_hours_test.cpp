@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "engine/identification/closed_loop/loop_record.h"
 #include "engine/request/replay/replay.h"
 #include "tests/engine/tuning/random_plants.h"
 
@@ -113,7 +115,10 @@ TEST(ReplayedHours, AreRightWithin15PercentAndWithinTheirBands) {
         TuningEntry entry;
         entry.evaluation.emplace();
         entry.evaluation->controller = IdealPid{.Kp = gain(other), .Ti = reset(other)};
-        const auto replay = RecordReplayer(request, inexact_model(hour, random)).of(entry);
+        IdentifiedModel model = inexact_model(hour, random);
+        const CleanRecord clean = *clean_record(sent);
+        model.loop = std::make_shared<const IdentifiedLoop>(identified_loop(clean, set_point_of(clean, sent), sent));
+        const auto replay = RecordReplayer(request, model).of(entry);
         if (!replay || replay->refused) continue;
         ++answered;
         near += std::abs(replay->IAE_ratio / truth - 1) <= 0.15;

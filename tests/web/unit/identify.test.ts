@@ -201,6 +201,9 @@ test("records given as numbers and as text are distinguished by their samples al
   const controlled = { ...arrays, r: [7, 8] };
   assert.deepEqual(samplesOf(controlled).r, [7, 8]);
   assert.equal(csvOf(controlled), "t,u,y,r\n0,0,5,7\n2,1,6,8");
+  const switched = { ...arrays, mode: ["AUTO", "MAN"] };
+  assert.deepEqual(samplesOf(switched).mode, ["AUTO", "MAN"]);
+  assert.equal(csvOf(switched), "t,u,y,mode\n0,0,5,AUTO\n2,1,6,MAN");
 });
 
 test("the page asks for the traces of a record's models and of nothing else", () => {

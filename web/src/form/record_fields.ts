@@ -20,13 +20,14 @@ export interface RecordFields {
   askUnit(): void;
 }
 
-type ColumnName = "t" | "u" | "y" | "r" | "d";
+type ColumnName = "t" | "u" | "y" | "r" | "mode" | "d";
 
 const COLUMN_LABELS: Record<ColumnName, string> = {
   t: "Time",
   u: "Controller output (u)",
   y: "Measurement (y)",
   r: "Set point",
+  mode: "Mode (auto, manual)",
   d: "Measured disturbance",
 };
 
@@ -80,9 +81,9 @@ const METHODS = [
 ] as const;
 
 const FOUND = "detected";
-const COLUMN_NAMES = ["t", "u", "y", "r", "d"] as const;
+const COLUMN_NAMES = ["t", "u", "y", "r", "mode", "d"] as const;
 /** Words for an unchosen column if none was found. */
-const UNCHOSEN: Partial<Record<ColumnName, string>> = { r: "none, or detected", d: "none" };
+const UNCHOSEN: Partial<Record<ColumnName, string>> = { r: "none, or detected", mode: "none, or detected", d: "none" };
 
 const known = (choices: readonly (readonly [string, string])[], value: unknown): string =>
   typeof value === "string" && choices.some(([id]) => id === value) ? value : "auto";
@@ -101,6 +102,7 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
     u: column("u"),
     y: column("y"),
     r: column("r"),
+    mode: column("mode"),
     d: column("d"),
   };
   const timeUnit = choiceField(
@@ -247,17 +249,18 @@ const columnOf = (text: string): string | number => (/^[1-9]\d*$/.test(text) ? N
 /** A record given as numbers, converted to the text that a field shows. */
 export function csvOf(record: RecordedTest): string {
   if (record.csv !== undefined) return record.csv;
-  const { t, u = [], y = [], r, dt = 1 } = record;
-  const rows = y.map((value, index) => {
-    const row = `${t?.[index] ?? index * dt},${u[index] ?? ""},${value}`;
-    return r ? `${row},${r[index] ?? ""}` : row;
-  });
-  return [r ? "t,u,y,r" : "t,u,y", ...rows].join("\n");
+  const { t, u = [], y = [], r, mode, dt = 1 } = record;
+  const optional = [r && { name: "r", values: r }, mode && { name: "mode", values: mode }].filter((column) => !!column);
+  const rows = y.map((value, index) =>
+    [t?.[index] ?? index * dt, u[index] ?? "", value, ...optional.map(({ values }) => values[index] ?? "")].join(","),
+  );
+  return [["t,u,y", ...optional.map(({ name }) => name)].join(","), ...rows].join("\n");
 }
 
 /** The samples of a record without the options for reading it. */
 export function samplesOf(record: RecordedTest): RecordedTest {
-  const { csv, t, dt, u, y, r } = record;
+  const { csv, t, dt, u, y, r, mode } = record;
   if (csv !== undefined) return { csv };
-  return { ...(t === undefined ? { dt: dt ?? 1 } : { t }), u: u ?? [], y: y ?? [], ...(r ? { r } : {}) };
+  const optional = { ...(r ? { r } : {}), ...(mode ? { mode } : {}) };
+  return { ...(t === undefined ? { dt: dt ?? 1 } : { t }), u: u ?? [], y: y ?? [], ...optional };
 }

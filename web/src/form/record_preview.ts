@@ -10,6 +10,7 @@ const ROLES: Record<PreviewColumn["guess"], string> = {
   u: "u, controller output",
   y: "y, measurement",
   r: "set point",
+  mode: "mode of the loop",
   "-": "not used",
 };
 

@@ -1,5 +1,5 @@
 // Feedback that is found by the controller's law over all rows, and records without feedback.
-#include "engine/identification/closed_loop/controller_law.h"
+#include "engine/identification/closed_loop/recognised_law.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ double span(const std::vector<double>& values) {
     return *std::ranges::max_element(values) - *std::ranges::min_element(values);
 }
 
-TEST(ControllerLaw, ASmoothLoopAtAConstantSetPointIsRefused) {
+TEST(RecognisedLaw, ASmoothLoopAtAConstantSetPointIsRefused) {
     for (const double noise : {0.0, 0.01}) {
         Record record = smooth_loop(noise);
         for (const bool with_r : {true, false}) {
@@ -60,18 +60,34 @@ TEST(ControllerLaw, ASmoothLoopAtAConstantSetPointIsRefused) {
     }
 }
 
-TEST(ControllerLaw, FindsGainAndIntegralOfAPiController) {
+TEST(RecognisedLaw, FindsGainAndIntegralOfAPiController) {
     const Record record = smooth_loop(0.0);
     const auto clean = clean_record(record);
     ASSERT_TRUE(clean);
-    const auto law = controller_law(*clean, input_at_samples(*clean), {});
+    const auto law = recognised_law(*clean, input_at_samples(*clean), {});
     ASSERT_TRUE(law);
     const RecordScale& s = clean->scale;
     EXPECT_NEAR(law->gain * s.u_scale / s.y_scale, -2, 0.05);
     EXPECT_NEAR(law->integral * s.u_scale / s.y_scale / s.t_scale, 0.3, 0.01);
 }
 
-TEST(ControllerLaw, OpenLoopTestsKeepToNone) {
+TEST(RecognisedLaw, LeavesRowsInManualOut) {
+    Record record = smooth_loop(0.0);
+    std::vector<double> automatic(record.t.size(), 1.0);
+    for (std::size_t i = 30; i < 38; ++i) {
+        record.u[i] += 0.3 * span(record.u) * std::sin(0.8 * static_cast<double>(i));
+        automatic[i] = 0;
+    }
+    const auto clean = clean_record(record);
+    ASSERT_TRUE(clean);
+    const std::vector<double> u = input_at_samples(*clean);
+    EXPECT_FALSE(recognised_law(*clean, u, {}));
+    const auto law = recognised_law(*clean, u, {}, automatic);
+    ASSERT_TRUE(law);
+    EXPECT_NEAR(law->gain * clean->scale.u_scale / clean->scale.y_scale, -2, 0.05);
+}
+
+TEST(RecognisedLaw, OpenLoopTestsKeepToNone) {
     constexpr unsigned kTests = 600;
     constexpr int kAllowed = 3;  // 0.5 %
     int found = 0;
@@ -89,7 +105,7 @@ TEST(ControllerLaw, OpenLoopTestsKeepToNone) {
 }
 
 /// u moved by hand through a lag, as a soft start, and along an S: smooth, but not a controller's response to y.
-TEST(ControllerLaw, SoftStartsByHandAreNoLoop) {
+TEST(RecognisedLaw, SoftStartsByHandAreNoLoop) {
     int tests = 0;
     for (unsigned seed = 1; seed <= 24; ++seed) {
         testing::Dice dice(seed);
@@ -117,7 +133,7 @@ TEST(ControllerLaw, SoftStartsByHandAreNoLoop) {
 }
 
 /// Column r is the command sent to the actuator: u itself, u one row earlier, or an affine function of u.
-TEST(ControllerLaw, AColumnRThatIsUIsNoSetPoint) {
+TEST(RecognisedLaw, AColumnRThatIsUIsNoSetPoint) {
     for (const auto& [slope, offset, early] : {std::tuple{1.0, 0.0, 0}, {1.0, 0.0, 1}, {0.1, 5.0, 0}}) {
         Record record = testing::simulate(testing::even_times(160, 1), 0, 0, {{10, 3}, {60, 1}, {110, 2}},
                                           testing::first_order(0.9, 5, 0));

@@ -96,6 +96,40 @@ void put_methods(const TuneWords& words, Json& request) {
     }
 }
 
+bool is_index(const std::string& name) {
+    return !name.empty() && name.size() <= 3 && name.find_first_not_of("0123456789") == name.npos;
+}
+
+/// The member of an object, or the element of a list, which is added if it is the next one; null if there is none.
+Json* member_of(Json& whole, const std::string& name) {
+    if (whole.is_null()) whole = is_index(name) ? Json::array() : Json::object();
+    if (whole.is_object() && !name.empty()) return &whole[name];
+    if (!whole.is_array() || !is_index(name)) return nullptr;
+    const std::size_t index = std::stoul(name);
+    return index <= whole.size() ? &whole[index] : nullptr;
+}
+
+/// Sets a member by its place, "evaluate.own_step.target=60": numbers between the dots count the elements of a list.
+std::optional<Problem> put_member(const std::string& setting, Json& request) {
+    const std::size_t equals = setting.find('=');
+    const std::string quoted = "--set is \"" + setting + "\"";
+    if (equals == setting.npos)
+        return unclear(quoted + "; it must be MEMBER=VALUE, such as evaluate.own_step.target=60.");
+    Json* at = &request;
+    for (std::size_t from = 0; from <= equals;) {
+        const std::size_t end = std::min(setting.find('.', from), equals);
+        at = member_of(*at, setting.substr(from, end - from));
+        if (at == nullptr)
+            return unclear(quoted + "; the request has no place " + setting.substr(0, end) +
+                           ". Name its members with dots between them, such as evaluate.own_step.target.");
+        from = end + 1;
+    }
+    const std::string value = setting.substr(equals + 1);
+    *at = Json::parse(value, nullptr, false);
+    if (at->is_discarded()) *at = value;
+    return std::nullopt;
+}
+
 /// True if the text is an object about a plant, a record, an ultimate point or a model, also in each of its `points`,
 /// and if its arrays are members of a request: a record may have a member that names its plant.
 bool holds_request(std::string_view text) {
@@ -191,6 +225,8 @@ std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::o
                            "\"; it must be Kp, Ti and Td of the ideal form, such as \"0.5 10 0\".");
         for (std::size_t i = 0; i < values.size(); ++i) today[kNames[i]] = number_or_word(values[i]);
     }
+    for (const std::string& setting : words.set)
+        if (auto problem = put_member(setting, request)) return *std::move(problem);
     return request.dump();
 }
 

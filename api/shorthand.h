@@ -30,7 +30,8 @@ struct TuneWords {
     std::string Ms;         ///< limit of Ms and Mt for robust and all; without either method, Ms of each; "": not given
     std::string baseline;   ///< today's settings, "Kp Ti Td" or "from-record"; "": those of the file, or none
     std::string Ku, Pu, K;  ///< instead of a plant and a file: the ultimate point, and optionally the static gain
-    CsvRequest record;      ///< if the file is a recorded test; for a plant, its time_unit is that of all times
+    std::vector<std::string> set;  ///< "MEMBER=VALUE": any member of the request, after all others
+    CsvRequest record;             ///< if the file is a recorded test; for a plant, its time_unit is that of all times
 };
 
 /// The member `record` of a request, with that text.

@@ -1,6 +1,7 @@
-// Writes src/api/contract.gen.ts, the types of the contract, from the service's own document on standard input:
+// Writes src/api/contract.gen.ts, the types of the contract, and src/api/units.gen.ts, the units of its figures, from
+// the service's own document on standard input:
 //     curl -s http://127.0.0.1:8080/openapi.json | npm run --silent contract
-// A test compares the file with the document of the current service. Types that the page does not use, and
+// A test compares the files with the document of the current service. Types that the page does not use, and
 // descriptions, are left out.
 import { readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -18,6 +19,12 @@ const ANSWERED = [
 
 /** Types that the page fills from a description and reads by name, each with the member that holds its kind. */
 const OPEN = { Plant: "type", PlantModel: "type", Method: "method" };
+
+/** Types with figures of which the page shows the units. */
+const MEASURED = [
+  "DataQuality", "IdealController", "LoadPerformance", "MissingPart", "NonlinearController", "OwnLoad", "OwnLoadFigures", "OwnSetpointFigures",
+  "OwnStep", "OwnStepEntry", "PreTest", "ReplayFigures", "Robustness", "SetpointPerformance",
+];
 
 const SHAPE = ["$ref", "type", "enum", "const", "additionalProperties", "items", "oneOf", "anyOf", "properties", "required"];
 
@@ -88,5 +95,18 @@ export async function contractTypes(document) {
   return `// Made by generate_contract.mjs from the service's /openapi.json; not to be edited.\n${types.replaceAll("    ", "  ")}`;
 }
 
-if (process.argv[1] === fileURLToPath(import.meta.url))
-  writeFileSync(new URL("src/api/contract.gen.ts", import.meta.url), await contractTypes(JSON.parse(readFileSync(0, "utf8"))));
+/** By type and member; a member without a unit is left out. */
+export function figureUnits(document) {
+  const types = MEASURED.map((type) => {
+    const { properties } = document.components.schemas[type];
+    const units = Object.entries(properties).flatMap(([name, schema]) => (schema["x-unit"] ? [`    ${name}: ${JSON.stringify(schema["x-unit"])},`] : []));
+    return `  ${type}: {\n${units.join("\n")}\n  },`;
+  });
+  return `// Made by generate_contract.mjs from the service's /openapi.json; not to be edited.\nexport const UNITS = {\n${types.join("\n")}\n} as const;\n`;
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  const document = JSON.parse(readFileSync(0, "utf8"));
+  writeFileSync(new URL("src/api/contract.gen.ts", import.meta.url), await contractTypes(document));
+  writeFileSync(new URL("src/api/units.gen.ts", import.meta.url), figureUnits(document));
+}

@@ -23,8 +23,8 @@ constexpr FigureRow kRobustness[] = {{"Ms", "robustness/Ms", ""},
                                      {"Delay margin", "robustness/delay_margin", "time"},
                                      {"Noise gain Mks", "robustness/Mks", "u/y"}};
 constexpr FigureRow kLoad[] = {{"IAE", "performance/load/IAE", "y time"},
-                               {"ISE", "performance/load/ISE", ""},
-                               {"ITAE", "performance/load/ITAE", ""},
+                               {"ISE", "performance/load/ISE", "y^2 time"},
+                               {"ITAE", "performance/load/ITAE", "y time^2"},
                                {"Peak", "performance/load/peak", "y"},
                                {"Recovery time", "performance/load/recovery_time", "time"},
                                {"TV of u", "performance/load/TV", "u"}};
@@ -40,8 +40,26 @@ constexpr FigureRow kEffect[] = {{"Load step: IAE", "performance/load/IAE", "y t
                                  {"Load step: TV of u", "performance/load/TV", "u"},
                                  {"Set-point step: overshoot", "performance/setpoint/overshoot_percent", "%"},
                                  {"Ms", "robustness/Ms", ""}};
+/// The figures of the user's own step.
+constexpr FigureRow kOwnStep[] = {{"Set point: IAE", "own_step/setpoint/IAE", "y time"},
+                                  {"Set point: overshoot", "own_step/setpoint/overshoot", "y"},
+                                  {"Set point: settling time", "own_step/setpoint/settling_time", "time"},
+                                  {"Load: IAE", "own_step/load/IAE", "y time"},
+                                  {"Load: peak", "own_step/load/peak", "y"},
+                                  {"Load: recovery time", "own_step/load/recovery_time", "time"},
+                                  {"Smallest u", "own_step/u_min", "u"},
+                                  {"Largest u", "own_step/u_max", "u"},
+                                  {"TV of u", "own_step/travel", "u"},
+                                  {"Time at the lower limit of u", "own_step/time_at_min", "time"},
+                                  {"Time at the upper limit of u", "own_step/time_at_max", "time"},
+                                  {"u needed in the end", "own_step/u_needed", "u"},
+                                  {"y in the end", "own_step/y_final", "y"}};
 constexpr FigureRow kReplay[] = {{"IAE", "replay/figures/IAE", "y time"},
                                  {"Travel of u", "replay/figures/travel", "u"}};
+
+std::string squared(const std::string& unit) {
+    return unit.find_first_of(" /*") == std::string::npos ? unit + "²" : "(" + unit + ")²";
+}
 
 std::string unit_of(const FigureRow& row, const ReportInput& s) {
     const std::string unit = row.unit;
@@ -50,6 +68,8 @@ std::string unit_of(const FigureRow& row, const ReportInput& s) {
     if (unit == "y") return s.y;
     if (unit == "u/y") return unit_quotient(s.u, s.y);
     if (unit == "y time") return s.y.empty() ? "" : s.y + " " + s.time;
+    if (unit == "y^2 time") return s.y.empty() ? "" : squared(s.y) + " " + s.time;
+    if (unit == "y time^2") return s.y.empty() ? "" : s.y + " " + squared(s.time);
     return unit;
 }
 
@@ -155,6 +175,36 @@ Html verdict_line(const Json& finding) {
     return element("li", finding.value("text", ""), {{"class", finding.value("level", "note")}});
 }
 
+/// "200 degC" for a member of the user's own step; 0 if it is left out.
+std::string amount(const JsonLocation& place, const std::string& unit) {
+    const Json& value = place.value();
+    return number_text(value.is_number() ? value.get<double>() : 0, 6) + (unit.empty() ? "" : " " + unit);
+}
+
+/// The load of the user's own step in a sentence; "" without one.
+std::string load_words(const JsonLocation& load, const ReportInput& s) {
+    if (!load.exists()) return "";
+    const bool at_output = text_at(load.at("at")) == "output";
+    const std::string shape = text_at(load.at("shape"));
+    std::string words = " A load of " + amount(load.at("size"), at_output ? s.y : s.u) + " at the plant's " +
+                        (at_output ? "output" : "input") + " follows";
+    if (shape == "pulse") words += ", for " + amount(load.at("duration"), s.time);
+    if (shape == "ramp") words += ", rising over " + amount(load.at("duration"), s.time);
+    return words + ".";
+}
+
+/// The user's own step in sentences.
+std::string step_words(const JsonLocation& step, const ReportInput& s) {
+    std::string words = "From rest at y = " + amount(step.at("y"), s.y) + " and u = " + amount(step.at("u"), s.u) +
+                        " the set point goes to " + amount(step.at("target"), s.y);
+    if (step.at("ramp_rate").exists())
+        words += ", by " + amount(step.at("ramp_rate"), s.y) + " per " + (s.time.empty() ? "unit of time" : s.time);
+    words += "." + load_words(step.at("load"), s);
+    if (step.at("u_min").exists()) words += " u is at least " + amount(step.at("u_min"), s.u) + ".";
+    if (step.at("u_max").exists()) words += " u is at most " + amount(step.at("u_max"), s.u) + ".";
+    return words;
+}
+
 bool same_finding(const Json& a, const Json& b) {
     return a.value("code", "") == b.value("code", "") && a.value("figures", Json()) == b.value("figures", Json());
 }
@@ -225,6 +275,27 @@ Html figures_section(const ReportInput& s) {
     };
     const Html tables = each("Margins", kRobustness) + each("Load step", kLoad) + each("Set-point step", kSetpoint);
     return section("Figures", element("div", tables, {{"class", "tables"}}) + instability(s) + worst_case(s));
+}
+
+Html own_step_section(const ReportInput& s) {
+    const JsonLocation step = s.request.at("evaluate").at("own_step");
+    if (!step.exists() || !s.entry.at("own_step").exists()) return {};
+    const Html words = element("p", step_words(step, s));
+    const JsonLocation refused = s.entry.at("own_step").at("refused");
+    if (refused.exists()) return section("Your own step", words + element("p", text_at(refused.at("text"))));
+    std::vector<LoopColumn> columns = {{"Proposal", s.entry}};
+    if (s.today && s.today->at("own_step").at("u_min").exists()) columns.push_back({"Today", *s.today});
+    std::vector<FigureRow> rows;
+    for (const FigureRow& row : kOwnStep) {
+        const std::string_view place = row.place;
+        const bool at_limit = place.ends_with("time_at_min") || place.ends_with("time_at_max");
+        if (!at_limit || step.at(place.ends_with("min") ? "u_min" : "u_max").exists()) rows.push_back(row);
+    }
+    const Html figures = figure_table("Figures of the step", rows, columns, columns.front(), s);
+    Html drawings;
+    for (const Plot& plot : own_step_plots(s)) drawings += drawn(plot);
+    return section("Your own step", words + element("div", figures, {{"class", "tables"}}) +
+                                        element("div", drawings, {{"class", "figures"}}));
 }
 
 Html effect_section(const ReportInput& s) {

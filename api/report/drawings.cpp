@@ -168,6 +168,30 @@ std::vector<Plot> response_plots(const ReportInput& s) {
             response(s, "Set-point step: u", "setpoint", "u", s.u), response(s, "Load step: u", "load", "u", s.u)};
 }
 
+std::vector<Plot> own_step_plots(const ReportInput& s) {
+    Plot y{
+        .title = "Your own step: y", .x_label = with_unit("t", s.time), .y_label = with_unit("y", s.y), .traces = {}};
+    Plot u{
+        .title = "Your own step: u", .x_label = with_unit("t", s.time), .y_label = with_unit("u", s.u), .traces = {}};
+    const JsonLocation step = s.request.at("evaluate").at("own_step");
+    for (const Source& source : sources_of(s)) {
+        const JsonLocation trace = source.place.at("own_step").at("trace");
+        if (!trace.at("t").exists()) continue;
+        const std::vector<double> t = numbers_at(trace.at("t"));
+        if (y.traces.empty()) {
+            std::vector<double> times = t, r = numbers_at(trace.at("r"));
+            times.insert(times.begin(), 0);
+            r.insert(r.begin(), step.at("y").value().is_number() ? step.at("y").value().get<double>() : 0);
+            y.traces.push_back({.name = "Set point", .line = Line::setpoint, .x = std::move(times), .y = std::move(r)});
+        }
+        y.traces.push_back({.name = source.name, .line = source.line, .x = t, .y = numbers_at(trace.at("y"))});
+        u.traces.push_back({.name = source.name, .line = source.line, .x = t, .y = numbers_at(trace.at("u"))});
+    }
+    for (const auto& [member, name] : {std::pair{"u_min", "lowest u"}, {"u_max", "highest u"}})
+        if (step.at(member).value().is_number()) u.limits.emplace_back(name, step.at(member).value().get<double>());
+    return {y, u};
+}
+
 Html responses_section(const ReportInput& s) {
     Html figures;
     for (const Plot& plot : response_plots(s)) figures += drawn(plot);

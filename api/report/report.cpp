@@ -29,9 +29,10 @@ std::string full_report(const ReportInput& subject, const ReportWords& said) {
     const std::string title = report_title(subject, said);
     return page(title, head_of(subject, said, title, about_of(subject)) + verdict_section(subject) +
                            settings_section(subject, TodayColumn::if_known) + figures_section(subject) +
-                           responses_section(subject) + robustness_section(subject) + plant_section(subject) +
-                           method_section(subject) + assumptions_section(subject) + signatures() +
-                           forms_section(subject) + request_section(subject.request.value(), said.origin));
+                           responses_section(subject) + own_step_section(subject) + robustness_section(subject) +
+                           plant_section(subject) + method_section(subject) + assumptions_section(subject) +
+                           signatures() + forms_section(subject) +
+                           request_section(subject.request.value(), said.origin));
 }
 
 }  // namespace

@@ -38,6 +38,10 @@ Html effect_drawing(const ReportInput& subject);
 /// Set-point and load step, y and u of each.
 std::vector<Plot> response_plots(const ReportInput& subject);
 Html responses_section(const ReportInput& subject);
+/// y with the set point, and u with its limits, of the user's own step; without lines if the entry has none.
+std::vector<Plot> own_step_plots(const ReportInput& subject);
+/// The user's own step: the step itself, its figures and its course; empty if the request has none.
+Html own_step_section(const ReportInput& subject);
 Html robustness_section(const ReportInput& subject);
 Html plant_section(const ReportInput& subject);
 Html method_section(const ReportInput& subject);

@@ -70,6 +70,12 @@ void add_tune_options(CLI::App& app, TuneCommand& command) {
     app.add_option("--baseline", command.words.baseline,
                    "Today's settings in the ideal form: \"Kp Ti Td\"; from-record: as a recorded test shows them")
         ->type_name("TEXT");
+    app.add_option("--set", command.words.set,
+                   "Any other member of the request, such as evaluate.own_step.target=60; may be repeated")
+        ->type_name("MEMBER=VALUE")
+        ->take_all()
+        ->expected(1)
+        ->allow_extra_args(false);
     add_record_options(app, command.words.record);
     CLI::Option* plot = app.add_flag("--plot", command.plot, "The table, and below it a plot of the best responses");
     app.add_option("--svg", command.svg, "Write that plot to this file, as SVG")->type_name("FILE");

@@ -41,6 +41,37 @@ TEST(Shorthand, WordsStandAboveTheFileAndLeaveTheRestOfItAlone) {
     EXPECT_EQ(request_of(words, file), changed);
 }
 
+TEST(Shorthand, AnyMemberOfTheRequestIsSetByItsPlace) {
+    TuneWords words;
+    words.plant = "2 e^(-3s)/(10s+1)";
+    words.methods = {"robust", "simc"};
+    words.set = {"evaluate.own_step.target=60",
+                 "evaluate.own_step.u_max=1e2",
+                 "units={\"y\": \"degC\"}",
+                 "tune.0.Mks=20",
+                 "name=TIC-1",
+                 "evaluate.own_step.load.at=output",
+                 "controllers.0.form=ideal"};
+    Json expected{{"plant", words.plant}};
+    expected["tune"] = Json::parse(R"([{"method": "robust", "Mks": 20}, {"method": "simc"}])");
+    expected["evaluate"] = Json::parse(R"({"own_step": {"target": 60, "u_max": 100, "load": {"at": "output"}}})");
+    expected["units"] = {{"y", "degC"}};
+    expected["name"] = "TIC-1";
+    expected["controllers"] = Json::parse(R"([{"form": "ideal"}])");
+    EXPECT_EQ(request_of(words), expected);
+}
+
+TEST(Shorthand, APlaceThatTheRequestDoesNotHaveIsRefusedWithItsName) {
+    for (const char* setting :
+         {"evaluate", "=1", "evaluate..points=3", "plant.K=2", "tune.7.Ms=1.6", "tune.x=1", ".=1"}) {
+        TuneWords words;
+        words.plant = "2 e^(-3s)/(10s+1)";
+        words.methods = {"robust"};
+        words.set = {setting};
+        EXPECT_EQ(refusal_of(words).find(std::string("--set is \"") + setting + "\""), 0) << setting;
+    }
+}
+
 TEST(Shorthand, ATestInAFileBecomesTheRecord) {
     TuneWords words;
     words.record.u = "2";

@@ -169,6 +169,31 @@ class ReportTest(unittest.TestCase):
                          [entry["controller"] for entry in job["result"]["controllers"]])
         self.assertEqual(again["result"]["request_hash"], job["result"]["request_hash"])
 
+    def test_the_users_own_step_is_told_with_its_figures_next_to_todays(self):
+        step = {"y": 20, "target": 120, "ramp_rate": 5, "u_max": 60,
+                "load": {"size": -10, "at": "output", "shape": "pulse", "duration": 30}}
+        job = self.job(BASE | {"evaluate": {"own_step": step}})
+        tree, text, figures = self.checked(job)
+        told = "".join(tree.itertext())
+        self.assertIn("From rest at y = 20 °C and u = 0 % the set point goes to 120 °C, by 5 °C per s. A load of "
+                      "\u221210 °C at the plant's output follows, for 30 s. u is at most 60 %.", told)
+        first = next(i for i in job["result"]["ranking"] if job["result"]["controllers"][i]["method"] != "baseline")
+        today = next(i for i, entry in enumerate(job["result"]["controllers"]) if entry["method"] == "baseline")
+        for place in ("setpoint/IAE", "setpoint/settling_time", "load/peak", "u_max", "travel", "time_at_max"):
+            for entry in (first, today):
+                self.assertIn("/result/controllers/%d/own_step/%s" % (entry, place), figures)
+        self.assertNotIn("/result/controllers/%d/own_step/time_at_min" % first, figures)
+        self.assertEqual(len(list(tree.iter(XHTML + "figure"))), 6 + 2)
+        for unit in ("ISE (°C² s)", "ITAE (°C s²)"):
+            self.assertIn(unit, told)
+        self.assertNotIn("own step", "".join(self.checked(self.job(BASE))[0].itertext()).lower())
+
+    def test_an_own_step_that_is_not_simulated_is_told_with_its_reason(self):
+        job = self.job(BASE | {"tune": [], "controllers": [{"form": "npid", "Kp": 0.5, "Ti": 8, "Td": 0, "delta_r": 3}],
+                               "evaluate": {"own_step": {"target": 1}}})
+        self.assertIn("The nonlinear integral of this controller is not supported here.",
+                      "".join(self.checked(job, "?controller=0")[0].itertext()))
+
     def test_the_command_in_it_is_one_that_a_shell_runs(self):
         job = self.job(BASE | {"name": "it's TIC-101"})
         tree, _, _ = self.checked(job)

@@ -48,14 +48,14 @@ export function jobFlow(store: Store): JobFlow {
   const beginRetune = newest();
 
   function open(job: Job, screen: JobScreen = "design"): void {
-    const nothing = { selected: null, drawn: null, sort: "", rankMs: null };
+    const nothing = { selected: null, drawn: null, sort: "", rankMs: null, step: null };
     store.set((workspace) => ({ ...workspace, job, jobTrouble: "", ...nothing }));
     location.hash = addressOfJob(job.id, screen);
   }
 
   /** The newest call counts: results of older ones are dropped. */
   async function retune(request: TuningRequest, index: number, onWaiting: (job: Job) => void): Promise<Job | null> {
-    const from = store.get().route;
+    const { route: from, step: sent } = store.get();
     const isNewest = beginRetune();
     const job = await postJobAndWait(request, FIRST_WAIT_S)
       .then((made) => ended(made, (now) => isNewest() && onWaiting(now)))
@@ -69,9 +69,11 @@ export function jobFlow(store: Store): JobFlow {
     const now = store.get().route;
     // The same job's screen: a slider that has moved since then writes its own address.
     if (from.screen !== "design" || now.screen !== "design" || now.job !== from.job) return null;
-    const { values: _modified, ...before } = now;
-    const route: Route = { ...before, job: job.id, entry: index };
-    store.set((workspace) => ({ ...workspace, route, job, selected: index, jobTrouble: "" }));
+    const { values: _modified, step: typed, ...before } = now;
+    // The request has the step that was typed before it was sent.
+    const step = store.get().step === sent ? null : (typed ?? null);
+    const route: Route = { ...before, job: job.id, entry: index, ...(step ? { step } : {}) };
+    store.set((workspace) => ({ ...workspace, route, job, selected: index, step, jobTrouble: "" }));
     stepAddress(now, before, route);
     if (!isFinal(job.status)) follow(job.id);
     return job;

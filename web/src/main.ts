@@ -22,6 +22,7 @@ const store = createStore({
   drawn: null,
   sort: "",
   rankMs: null,
+  step: null,
   test: rememberedTest(),
   methods: [],
   products: [],

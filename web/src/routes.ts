@@ -1,4 +1,5 @@
 // Hash routes: the server needs no rewriting, and a plant never appears in an access log.
+import type { StepTexts } from "./form/own_step.ts";
 import type { StartTexts } from "./views/start.ts";
 
 /** Longer links are cut by mail and chat programs. */
@@ -14,8 +15,9 @@ export type Route =
   /** An operating range: of an example, of that job, or the current content. */
   | { screen: "range"; example: string; job: string | null }
   | { screen: "relay"; plant: string; values: Record<string, string> }
-  /** `values`: the positions of its sliders, if they differ from the proposal. */
-  | { screen: "design"; job: string; entry: number | null; values?: Record<string, string> }
+  /** `values`: the positions of its sliders, if they differ from the proposal. `step`: the user's own step, if it was
+      typed. */
+  | { screen: "design"; job: string; entry: number | null; values?: Record<string, string>; step?: StepTexts }
   /**
    * The comparison of a job. `sort`: a column's id, with a minus for descending order; "" is the ranking. `rankMs`: the
    * limit on Ms for the ranking, if it differs from the request's.
@@ -70,15 +72,29 @@ export function parseRoute(hash: string): Route {
     if (parts[2] === "identify") return { screen: "identify", job: parts[1] };
     if (parts[2] === "range") return { screen: "range", example: "", job: parts[1] };
     if (parts[2] === "edit") return { screen: "edit", job: parts[1] };
-    const { entry, ...modified } = values;
+    const { entry, ...others } = values;
+    const [modified, step] = withoutStep(others);
     return {
       screen: "design",
       job: parts[1],
       entry: /^\d+$/.test(entry ?? "") ? Number(entry) : null,
       ...(Object.keys(modified).length > 0 ? { values: modified } : {}),
+      ...(Object.keys(step).length > 0 ? { step } : {}),
     };
   }
   return { screen: "start" };
+}
+
+/** Begins the names of the user's own step in the address of a design. */
+const STEP = "step.";
+
+/** The values of an address without those of the step, and these by their own names. */
+function withoutStep(values: Record<string, string>): [Record<string, string>, StepTexts] {
+  const entries = Object.entries(values);
+  return [
+    Object.fromEntries(entries.filter(([name]) => !name.startsWith(STEP))),
+    Object.fromEntries(entries.flatMap(([name, text]) => (name.startsWith(STEP) ? [[name.slice(STEP.length), text]] : []))),
+  ];
 }
 
 /** With the plant, and what is typed about its loop as far as the link stays short. */
@@ -133,6 +149,7 @@ export function formatRoute(route: Route): string {
       const query = new URLSearchParams({
         ...(route.entry === null ? {} : { entry: String(route.entry) }),
         ...route.values,
+        ...Object.fromEntries(Object.entries(route.step ?? {}).map(([name, text]) => [STEP + name, text])),
       }).toString();
       return `#/jobs/${encodeURIComponent(route.job)}/design${query ? `?${query}` : ""}`;
     }

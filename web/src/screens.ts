@@ -325,7 +325,7 @@ export function screens(
   function openJobScreen(route: JobRoute, focus: boolean): void {
     const before = store.get();
     const same = before.job?.id === route.job;
-    const kept = same ? before : { job: null, selected: null, drawn: null, sort: "", rankMs: null };
+    const kept = same ? before : { job: null, selected: null, drawn: null, sort: "", rankMs: null, step: null };
     store.set((workspace) => ({
       ...workspace,
       job: kept.job,
@@ -334,6 +334,7 @@ export function screens(
       drawn: (route.screen === "compare" ? route.rows : null) ?? kept.drawn,
       sort: route.screen === "compare" ? route.sort : kept.sort,
       rankMs: (route.screen === "compare" ? route.rankMs : null) ?? kept.rankMs,
+      step: (route.screen === "design" ? route.step : null) ?? kept.step,
     }));
     // A link to the table alone shows the earlier choices; its address then contains them.
     const { drawn: rows, rankMs } = store.get();
@@ -371,14 +372,14 @@ export function screens(
   store.subscribe((workspace, previous) => {
     const route = workspace.route;
     if (!showsJob(route)) return;
-    const { selected, drawn, sort, rankMs } = workspace;
+    const { selected, drawn, sort, rankMs, step } = workspace;
     const parts = ["selected", "drawn", "sort", "rankMs"] as const;
     const changed = parts.some((part) => workspace[part] !== previous[part]);
     if (changed && workspace.job?.id === previous.job?.id)
       rewriteAddress(
         route,
         route.screen === "design"
-          ? { screen: "design", job: route.job, entry: selected }
+          ? { screen: "design", job: route.job, entry: selected, ...(step ? { step } : {}) }
           : { ...route, sort, rows: drawn, rankMs },
       );
     // A range has no comparison.

@@ -3,6 +3,7 @@
 import { computed, effect, signal, untracked } from "@preact/signals-core";
 import type { ReadonlySignal } from "@preact/signals-core";
 import type { Example, IdentifyRequest, Job, Method, ProductSummary } from "./api/types.ts";
+import type { StepTexts } from "./form/own_step.ts";
 import type { MyController } from "./my_controller.ts";
 import type { Route } from "./routes.ts";
 
@@ -19,6 +20,8 @@ export interface Workspace {
   sort: string;
   /** The limit on Ms below which rows are ranked, as typed; null: the request's. */
   rankMs: number | null;
+  /** The user's own step as typed, by the names of its fields; null: the request's, or the proposed one. */
+  step: StepTexts | null;
   /** The current recorded test. */
   test: IdentifyRequest | null;
   methods: Method[];

@@ -38,7 +38,7 @@ struct OptionSlider {
     std::optional<double> step = {};  ///< smallest step; empty: the form's own
     std::string label = {};           ///< empty: the option's name
     std::string low = {}, high = {};  ///< the meaning of its ends, in a word or two
-    /// Only one of the options of a group has its slider: the first that was given, else the last whose value is known.
+    /// Of a group one option has its slider: the first given, else the last with a known value; none without figures.
     std::string group = {};
     std::string moves_with = {};                 ///< another option that moves too, as long as both have the same value
     DesignFigure value_of = DesignFigure::none;  ///< figure of the design that is the option's value if none was given

@@ -207,8 +207,7 @@ void add_sliders(OptionSet<RobustOptions>& set) {
                        .label = "Noise limit Mks",
                        .low = "less noise",
                        .high = "more noise",
-                       .group = "noise",
-                       .value_of = DesignFigure::Mks});
+                       .reached = DesignFigure::Mks});
     OptionSlider filter = slider_about_value();
     filter.label = "Noise filter Tf";
     filter.low = "more noise", filter.high = "less noise";
@@ -234,7 +233,7 @@ OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
     set.field(&O::Mks, "Mks",
               "Largest allowed max |C S|, the gain from measurement noise to "
               "u.",
-              {.exclusive_minimum = 0});
+              {.unit = "u/y", .exclusive_minimum = 0});
     set.choice(&O::constraint, "constraint",
                "circles: the Ms and the Mt circle. m_circle: the smallest circle around both.",
                Words<Constraint>{{"circles", Constraint::circles}, {"m_circle", Constraint::m_circle}});

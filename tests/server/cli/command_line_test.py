@@ -212,6 +212,20 @@ class CommandLineTest(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertAlmostEqual(json.loads(done.stdout)["model"]["plant"]["K"], 20 / 30, delta=0.02)
 
+    def test_any_member_of_the_request_can_be_set(self):
+        plant = ("tune", "--plant", "2 e^(-3s)/(10s+1)", "--method", "robust", "--set", "tune.0.Mks=2")
+        done = run(*plant, "--set", 'evaluate.own_step={"y": 20, "u": 10, "target": 60, "u_max": 100}', "--with-request")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        answer = json.loads(done.stdout)
+        self.assertEqual(answer["request"]["evaluate"]["own_step"]["target"], 60)
+        entry = answer["result"]["controllers"][0]
+        self.assertAlmostEqual(entry["own_step"]["u_needed"], 10 + (60 - 20) / 2, delta=1e-6)
+        self.assertAlmostEqual(entry["robustness"]["Mks"], 2, delta=2e-3)
+        for setting, told in (("tune.3.Ms=2", "tune.3"), ("evaluate", "MEMBER=VALUE"), ("evalute.points=3", "evaluate")):
+            done = run(*plant, "--set", setting)
+            self.assertEqual((done.returncode, done.stdout), (1, ""), setting)
+            self.assertIn(told, json.dumps(json.loads(done.stderr)), setting)
+
     def test_wrong_options_are_told(self):
         for arguments in (("--listen", "nowhere"), ("--listen", "127.0.0.1:99999"), ("--store", "mysql:x"),
                           ("--log-format", "xml"), ("--store", "sqlite::memory:"), ("--rate-limit", "nan")):

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
-import { contractTypes } from "../../../web/generate_contract.mjs";
+import { contractTypes, figureUnits } from "../../../web/generate_contract.mjs";
 import { accessibilityViolations, browserTests, root } from "../harness.mjs";
 
 const tests = browserTests();
@@ -59,12 +59,16 @@ test("the methods' formulas are mathematics, each equation whole; without MathML
   });
 });
 
-test("the page's types are those of the service's own document", async () => {
+test("the page's types and units are those of the service's own document", async () => {
   const document = await (await fetch(`${tests.service.base}/openapi.json`)).json();
   const kept = readFileSync(path.join(root, "web/src/api/contract.gen.ts"), "utf8");
   assert.equal(await contractTypes(document), kept, "make them anew: web/generate_contract.mjs says how");
-  const { Standing } = document.components.schemas;
+  const units = readFileSync(path.join(root, "web/src/api/units.gen.ts"), "utf8");
+  assert.equal(figureUnits(document), units, "make them anew: web/generate_contract.mjs says how");
+  const { Standing, LoadPerformance } = document.components.schemas;
   delete Standing.properties.group;
   Standing.required = Standing.required.filter((name) => name !== "group");
   assert.notEqual(await contractTypes(document), kept, "another document has other types");
+  LoadPerformance.properties.IAE["x-unit"] = "y";
+  assert.notEqual(figureUnits(document), units, "another document has other units");
 });

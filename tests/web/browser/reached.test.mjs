@@ -154,7 +154,9 @@ test("while the slider is held, what is reached follows each answer", async () =
       const percent = three(overshootOf(controllers[0]));
       await page.waitForFunction(
         ([text, same]) => {
-          const shown = [...document.querySelectorAll(".controls .slider .reached")].map((span) => span.textContent);
+          const shown = [...document.querySelectorAll(".controls .slider .reached")]
+            .filter((span) => span.closest(".slider").textContent.startsWith("Set-point overshoot"))
+            .map((span) => span.textContent);
           return same ? shown.every((one) => one === "") : shown.some((one) => Number(/reached (\S+)/.exec(one)?.[1]) === text);
         },
         [percent, percent === asked],

@@ -75,6 +75,17 @@ test("a record without a model is drawn alone, with the part that was chosen", (
   assert.ok(frame.panes.every((pane) => pane.marks!.length === 1));
 });
 
+test("figures of the record without words of their own have the units of the contract", () => {
+  const data_quality = { u0: 5, u_limits: [0, 100], pretest: { duration: 12, drift: 0.1, at_rest: true } } as unknown as Model["data_quality"];
+  assert.deepEqual(qualityOf({ ...model, data_quality }, units).rows, [
+    ["U0 (%)", "5"],
+    ["U limits (%)", "0 to 100"],
+    ["Pretest duration (s)", "12"],
+    ["Pretest drift (°C/s)", "0.1"],
+    ["Pretest at rest", "yes"],
+  ]);
+});
+
 test("a residual of rounding dust is drawn as nothing, not as a signal", () => {
   const exact: Model = { ...model, fit: { t: [0, 1, 2], y: [0, 0.6, 1], y_model: [1e-13, 0.6, 1] } };
   const frame = identifiedFrame(exact, null, units, null, null)!;

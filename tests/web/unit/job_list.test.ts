@@ -63,7 +63,7 @@ test("a batch's columns are the settings with their units, and none of dashes al
   ];
   const columns = batchColumns(loops);
   const labels = columns.map(({ label }) => label);
-  for (const label of ["Kp (%/°C)", "Ti (min)", "b"]) assert.ok(labels.includes(label), label);
+  for (const label of ["Kp (%/°C)", "Ti (min)", "b", "Load IAE (°C min)"]) assert.ok(labels.includes(label), label);
   // No derivative, no filter, no today's settings, no optimum: no columns for them.
   for (const label of ["Td (min)", "Tf (min)", "Gain over today", "Above optimum", "Set-point filter (min)"])
     assert.ok(!labels.includes(label), label);
@@ -77,6 +77,9 @@ test("units that differ from loop to loop stand in the cells", () => {
   const Ti = batchColumns(loops).find(({ id }) => id === "Ti")!;
   assert.equal(Ti.label, "Ti");
   assert.deepEqual(loops.map(Ti.text), ["10 s", "10 min"]);
+  const tuned = loops.map((loop) => ({ ...loop, outline: { ...loop.outline, load_IAE: 5 } }) as ListedJob);
+  const IAE = batchColumns(tuned).find(({ id }) => id === "iae")!;
+  assert.deepEqual([IAE.label, ...tuned.map(IAE.text)], ["Load IAE", "5.00 s", "5.00 min"]);
 });
 
 test("for a product the columns are what is to be typed into it", () => {

@@ -31,7 +31,7 @@ const robust: Method = {
       controller: { type: "string", enum: ["PID", "PI"] },
       Ms: { type: "number", default: 1.4, "x-slider": limit },
       Mt: { type: "number", default: 1.4, "x-slider": { ...limit, moves_with: "Ms" } },
-      Mks: { type: "number", "x-slider": { ...noise, to: 2, value_of: "Mks" } },
+      Mks: { type: "number", "x-unit": "u/y", "x-slider": { logarithmic: true, relative: true, from: 0.2, to: 2, reached: "Mks" } },
       rho: { type: "number", default: 0.5 },
       filter: {
         type: "object",
@@ -54,15 +54,24 @@ const idsOf = (tune: TuneEntry, entry = entryOf("robust"), method: Method = robu
   optionSliders(tune, entry, method, units).map((spec) => spec.id);
 
 test("a robust design is turned by its limits, its noise and its set point", () => {
-  assert.deepEqual(idsOf({ method: "robust" }), ["Ms", "filter.Tf_over_Td", "setpoint.overshoot"]);
-  assert.deepEqual(idsOf({ method: "robust", Ms: 1.4, Mt: 1.2 }), ["Ms", "Mt", "filter.Tf_over_Td", "setpoint.overshoot"]);
-  assert.deepEqual(idsOf({ method: "robust", Mks: 5, setpoint: { weight: 0.5 } }), ["Ms", "Mks", "setpoint.weight"]);
-  assert.deepEqual(idsOf({ method: "robust", filter: { Tf: 0.3 } }), ["Ms", "filter.Tf", "setpoint.overshoot"]);
+  assert.deepEqual(idsOf({ method: "robust" }), ["Ms", "Mks", "filter.Tf_over_Td", "setpoint.overshoot"]);
+  assert.deepEqual(idsOf({ method: "robust", Ms: 1.4, Mt: 1.2 }), ["Ms", "Mt", "Mks", "filter.Tf_over_Td", "setpoint.overshoot"]);
+  assert.deepEqual(idsOf({ method: "robust", Mks: 5, setpoint: { weight: 0.5 } }), ["Ms", "Mks", "filter.Tf_over_Td", "setpoint.weight"]);
+  assert.deepEqual(idsOf({ method: "robust", filter: { Tf: 0.3 } }), ["Ms", "Mks", "filter.Tf", "setpoint.overshoot"]);
   const PI = entryOf("robust", { controller: { ...controller, Td: 0, filter: { type: "none" } } });
   assert.deepEqual(idsOf({ method: "robust", controller: "PI" }, PI), ["Ms", "Mks", "setpoint.overshoot"]);
   assert.deepEqual(idsOf({ method: "robust" }, entryOf("robust"), { id: "robust", title: "" }), [], "of a service that describes none");
   const [Ms] = optionSliders({ method: "robust" }, entryOf("robust"), robust, units);
   assert.deepEqual([Ms!.lo, Ms!.hi, Ms!.step, Ms!.value], [1.1, 2.5, 0.01, 1.4]);
+});
+
+test("the noise limit is offered about the design's own noise gain, and limits nothing until it is given", () => {
+  const spec = (tune: TuneEntry, entry = entryOf("robust")) => optionSliders(tune, entry, robust, units).find(({ id }) => id === "Mks");
+  const open = spec({ method: "robust" })!;
+  assert.deepEqual([open.value, open.lo, open.hi, open.unit, open.limit], [null, 4, 40, "%/°C", true]);
+  assert.equal(open.reached!(entryOf("robust")), 20);
+  assert.equal(spec({ method: "robust", Mks: 5 })!.value, 5);
+  assert.equal(spec({ method: "robust" }, entryOf("robust", { robustness: { Mks: null } as Entry["robustness"] } as Partial<Entry>)), undefined, "of a controller without a filter it is infinite");
 });
 
 test("a slider asks for the overshoot that was asked for, or for none; what is reached is the loop's that runs", () => {
@@ -84,10 +93,10 @@ test("a slider asks for the overshoot that was asked for, or for none; what is r
 
 test("of the filter's ratio the one asked for is turned, and the design's own is what is reached", () => {
   const entry = entryOf("robust");
-  const ratio = optionSliders({ method: "robust", filter: { Tf_over_Td: 0.3 } }, entry, robust, units)[1]!;
+  const ratio = optionSliders({ method: "robust", filter: { Tf_over_Td: 0.3 } }, entry, robust, units).find(({ id }) => id.startsWith("filter"))!;
   assert.deepEqual([ratio.id, ratio.value, ratio.reached!(entry)], ["filter.Tf_over_Td", 0.3, 0.1]);
   assert.equal(ratio.reached!(entryOf("robust", { controller: { ...controller, Td: 0 } })), null);
-  const time = optionSliders({ method: "robust", filter: { Tf: 0.5 } }, entry, robust, units)[1]!;
+  const time = optionSliders({ method: "robust", filter: { Tf: 0.5 } }, entry, robust, units).find(({ id }) => id.startsWith("filter"))!;
   assert.deepEqual([time.id, time.value, time.reached!(entry)], ["filter.Tf", 0.5, 0.2]);
 });
 

@@ -1,6 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { parseMatrix, parseNumber, parseNumbers, parseRanges, parseRoots } from "../../../web/src/form/number.ts";
+import { figureUnit, unitIn } from "../../../web/src/words/figure_units.ts";
+import { figureGroups } from "../../../web/src/words/figures.ts";
 
 const value = (text: string): unknown => {
   const parsed = parseNumber(text, "K");
@@ -82,4 +84,25 @@ test("ranges are read by name, and a bad one is shown as typed", () => {
     assert.equal(read.ok, false, text);
     assert.ok(!read.ok && read.sentence.includes(`"${text}"`), text);
   }
+});
+
+const named = { time: "s", u: "%", y: "°C" };
+
+test("a unit of the contract is written in the user's names", () => {
+  const written = ["y time", "y^2 time", "y time^2", "u/y", "rad/time", "deg", "%", "y/time"].map((unit) => unitIn(unit, named));
+  assert.deepEqual(written, ["°C s", "°C² s", "°C s²", "%/°C", "rad/s", "°", "%", "°C/s"]);
+  assert.equal(unitIn("y^2 time", { ...named, y: "m³/h" }), "(m³/h)² s");
+  assert.equal(unitIn("u/y", { ...named, y: "%" }), "", "of the same unit: a plain number");
+});
+
+test("a name that is not known is left out", () => {
+  const open = { time: "min", u: "", y: "" };
+  assert.deepEqual(["y^2 time", "y time", "u/y", "u"].map((unit) => unitIn(unit, open)), ["min", "min", "", ""]);
+  assert.equal(unitIn("u/y", { ...open, y: "°C" }), "1/°C");
+});
+
+test("every figure with a dimension shows its unit", () => {
+  assert.equal(figureUnit("Robustness", "Ms", named), "");
+  const bare = figureGroups(named, true, true).flatMap(({ rows }) => rows.filter(({ label }) => !label.includes("(")).map(({ label }) => label));
+  assert.deepEqual(bare, ["Ms", "Mt", "Gain margin", "Worst Ms", "Filter", "b", "c", "Action", "Gain margin, low"]);
 });

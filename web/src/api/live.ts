@@ -3,7 +3,7 @@
 import { call } from "./client.ts";
 import { settingsOf } from "./evaluate.ts";
 import { deleteJob, postJobAndWait } from "./jobs.ts";
-import type { Controller, Entry, Frontier, Implement, Model, Plant, Result, TuningRequest } from "./types.ts";
+import type { Controller, Entry, Frontier, Implement, Model, OwnStep, Plant, Result, TuningRequest } from "./types.ts";
 
 /** The subject of a call: a plant, or the model of a record with its region, so that the record is not identified
     again. */
@@ -80,6 +80,22 @@ export const designOf = async (body: unknown, signal: AbortSignal): Promise<Desi
 
 export const entriesOf = async (body: unknown, signal?: AbortSignal): Promise<Entry[]> =>
   ((await call("POST", "v1/evaluate", body, {}, signal)).data as { controllers: Entry[] }).controllers;
+
+/** A step for these controllers of a loop, in the units of its request. */
+export interface StepQuestion {
+  plant: Plant;
+  implement: Implement | undefined;
+  units: TuningRequest["units"];
+  step: OwnStep;
+  controllers: readonly Controller[];
+}
+
+/** The controllers' entries with the user's own step: its hold is common to them. */
+export const ownStepsOf = ({ plant, controllers, step, implement, units }: StepQuestion, signal: AbortSignal): Promise<Entry[]> =>
+  entriesOf(
+    evaluateBody({ ...(units ? { units } : {}), ...(implement ? { implement } : {}), evaluate: { own_step: step } }, { plant }, controllers),
+    signal,
+  );
 
 /** Evaluates a controller on the user's own product, with the steps of its request, without traces. */
 export async function evaluateAsBuilt(

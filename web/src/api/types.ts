@@ -30,6 +30,8 @@ export type {
   Model,
   OneSetting,
   OptimumAtMs,
+  OwnStep,
+  OwnStepEntry,
   PlantAnswer,
   PlantQuestion,
   PreviewAnswer as Preview,
@@ -119,6 +121,9 @@ export type Example = Omit<Contract.Example, "request"> & { request: TuningReque
 
 export type { OptionSlider, Schema } from "./method.ts";
 export type Method = Omit<Contract.MethodDescription, "options"> & { options?: Schema };
+
+/** The name of a job's loop; "" if it has none. */
+export const nameOf = ({ name, request }: Pick<Job, "name" | "request">): string => name || request?.name || "";
 
 export const isFinal = (status: Contract.JobStatus): boolean =>
   status === "succeeded" || status === "failed" || status === "cancelled";

@@ -1,11 +1,11 @@
 // The result of the emulation: y and u under the nonlinear controller, the emulating PID and chosen classical settings.
 import type { EmulatedScenario, Emulation, Plant } from "../api/types.ts";
-import { extent } from "../plot/axis.ts";
 import type { Frame, Look, Mark, Trace } from "../plot/frame.ts";
 import { scenarioWords } from "../words/emulation.ts";
 import { formatNumber, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { inputOf } from "../words/plant.ts";
+import { limitsNear } from "./responses.ts";
 import { interpolate } from "./rimc.ts";
 
 /** Looks of the classical settings, in the order in which they were chosen. */
@@ -45,6 +45,7 @@ export function emulationFrame(
     ];
   };
   const [ys, us] = [traces("y"), traces("u")];
+  const input = inputOf(plant);
   const goal = shown.y_rest + shown.setpoint_step;
   const setpoint: Mark[] = Number.isFinite(goal)
     ? [{ kind: "level", value: goal, role: "setpoint", label: "set point" }]
@@ -55,7 +56,7 @@ export function emulationFrame(
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes: [
       { y: { kind: "linear", label: withUnit("y", units.y) }, traces: ys, marks: setpoint, weight: 1.2 },
-      { y: { kind: "linear", label: withUnit("u", units.u) }, traces: us, marks: limitsNear(plant, us) },
+      { y: { kind: "linear", label: withUnit("u", units.u) }, traces: us, marks: limitsNear([input?.min, input?.max], us) },
     ],
     ownLegend: true,
     link: "emulation",
@@ -69,20 +70,6 @@ export function emulationFrame(
 function onlyScenario(emulation: Emulation): EmulatedScenario | null {
   const { t, y_nl, u_nl } = emulation;
   return t && y_nl && u_nl ? { setpoint_step: NaN, y_rest: NaN, u_rest: NaN, limited: false, t, y_nl, u_nl } : null;
-}
-
-/** Limits of the input that u approaches; others would compress its curve. */
-function limitsNear(plant: Plant | undefined, traces: Trace[]): Mark[] {
-  const input = inputOf(plant);
-  const [lo, hi] = extent(
-    traces.map((trace) => trace.y),
-    "linear",
-  );
-  return [input?.min, input?.max].flatMap((value): Mark[] =>
-    typeof value === "number" && value > lo - (hi - lo) / 2 && value < hi + (hi - lo) / 2
-      ? [{ kind: "level", value, role: "limit" }]
-      : [],
-  );
 }
 
 /** The cost of a run, compared with that of the nonlinear controller in one scenario, by the trapezoidal rule; null

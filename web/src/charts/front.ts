@@ -1,7 +1,8 @@
 // Robustness against speed: the least load IAE under each limit on Ms, with the designs and rules as points.
 import type { Entry, Frontier } from "../api/types.ts";
 import type { Frame, Mark, Trace } from "../plot/frame.ts";
-import { formatNumber, product, withUnit } from "../words/numbers.ts";
+import { figureUnit } from "../words/figure_units.ts";
+import { formatNumber, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { entryNames } from "./drawn.ts";
 
@@ -42,16 +43,17 @@ export function frontFrame(shown: FrontShown, units: UnitNames): Frame {
     ...(today ? [{ kind: "point" as const, ...today, label: "today", look: 2 as const }] : []),
     ...(here ? [{ kind: "point" as const, ...here, label: "", look: 1 as const, handle: shown.here.at !== null }] : []),
   ];
+  const unit = figureUnit("LoadPerformance", "IAE", units);
   const rulesSentence = rules.length === 0 ? "" : ` ${rules.length} rules are shown for comparison.`;
   return {
     title: "Robustness against speed",
     description: here
-      ? `The design has Ms ${formatNumber(here.x)} and a load IAE of ${formatNumber(here.y)}.${rulesSentence}`
+      ? `The design has Ms ${formatNumber(here.x)} and a load IAE of ${formatNumber(here.y)}${unit && ` ${unit}`}.${rulesSentence}`
       : "There is no such design.",
     x: { kind: "linear", label: "Ms", range: [LOWEST_MS, HIGHEST_MS] },
     panes: [
       {
-        y: { kind: "log", label: withUnit("load IAE", product(units.y, units.time)), range: rangeOf(traces, here, today) },
+        y: { kind: "log", label: withUnit("load IAE", unit), range: rangeOf(traces, here, today) },
         traces,
         marks,
       },

@@ -2,7 +2,9 @@
 import type { Figures, TuningRequest } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Frame, Look, Mark, OnDrag, Trace } from "../plot/frame.ts";
+import { figureUnit } from "../words/figure_units.ts";
 import { formatNumber, unitNames, withUnit } from "../words/numbers.ts";
+import type { UnitNames } from "../words/numbers.ts";
 import { inputOf } from "../words/plant.ts";
 import type { Drawn } from "./drawn.ts";
 
@@ -54,7 +56,7 @@ export function responseFrame(
   return {
     ...(grip?.at ? { drag: grip.drag } : {}),
     title: kind === "setpoint" ? "Set-point step" : "Load step at the plant input",
-    description: `${describe(kind, drawn, units.time, units.y)}${grip?.at ? ` The peak can be dragged, which moves ${grip.label}.` : ""}`,
+    description: `${describe(kind, drawn, units)}${grip?.at ? ` The peak can be dragged, which moves ${grip.label}.` : ""}`,
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes: [
       { y: { kind: "linear", label: withUnit("y", units.y) }, traces: traces("y"), marks: [...setpoint, ...handle], weight: 1.5 },
@@ -75,17 +77,29 @@ export function responseFrame(
 function limitMarks(request: TuningRequest | undefined, traces: Trace[]): Mark[] {
   const actuator = request?.evaluate?.actuator;
   const input = inputOf(request?.plant);
+  const own = [input?.min, input?.max].flatMap((value) => (typeof value === "number" ? [value - input!.nominal] : []));
+  const given = [actuator?.min, actuator?.max].filter((value) => typeof value === "number");
+  return [...given.map((value): Mark => ({ kind: "level", value, role: "limit" })), ...limitsNear(own, traces)];
+}
+
+/** Limits of u that its curves approach, within half of their range: others would compress them. */
+export function limitsNear(values: readonly (number | null | undefined)[], traces: readonly Trace[]): Mark[] {
   const [lo, hi] = extent(
     traces.map((trace) => trace.y),
     "linear",
   );
-  const near = (value: number): boolean => value > lo - (hi - lo) / 2 && value < hi + (hi - lo) / 2;
-  const own = [input?.min, input?.max].flatMap((value) => (typeof value === "number" ? [value - input!.nominal] : []));
-  const values = [actuator?.min, actuator?.max, ...own.filter(near)].filter((value) => typeof value === "number");
-  return values.map((value): Mark => ({ kind: "level", value, role: "limit" }));
+  return values.flatMap((value): Mark[] =>
+    typeof value === "number" && value > lo - (hi - lo) / 2 && value < hi + (hi - lo) / 2
+      ? [{ kind: "level", value, role: "limit" }]
+      : [],
+  );
 }
 
-function describe(kind: "setpoint" | "load", drawn: Drawn[], time: string, y: string): string {
+function describe(kind: "setpoint" | "load", drawn: Drawn[], units: UnitNames): string {
+  const load = (name: string): string => {
+    const unit = figureUnit("LoadPerformance", name, units);
+    return unit && ` ${unit}`;
+  };
   const sentences = drawn.map((item) => {
     const figures = item.entry.performance?.[kind];
     const number = (name: string): string => {
@@ -93,8 +107,8 @@ function describe(kind: "setpoint" | "load", drawn: Drawn[], time: string, y: st
       return formatNumber(typeof value === "number" ? value : null);
     };
     return kind === "setpoint"
-      ? `${item.name}: overshoot ${number("overshoot_percent")} %, settles after ${number("settling_time")} ${time}.`
-      : `${item.name}: peak ${number("peak")}${y && ` ${y}`}, integrated absolute error ${number("IAE")}.`;
+      ? `${item.name}: overshoot ${number("overshoot_percent")} %, settles after ${number("settling_time")} ${units.time}.`
+      : `${item.name}: peak ${number("peak")}${load("peak")}, integrated absolute error ${number("IAE")}${load("IAE")}.`;
   });
   return sentences.join(" ") || "No response to draw.";
 }

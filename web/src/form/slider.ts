@@ -19,6 +19,8 @@ export interface SliderOptions {
   step?: number;
   /** The meaning of its ends. */
   ends?: [string, string];
+  /** The text in place of an unknown value. */
+  unset?: string;
   pointer: () => string | null;
   /** The reason why a typed value is not valid; "" if it is. */
   wrong?(value: number): string;
@@ -197,7 +199,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
         take(valueAt(0.5));
         reported = NaN;
         field.input.value = "";
-        field.input.placeholder = "own";
+        field.input.placeholder = options.unset ?? "own";
         return;
       }
       stretch(next);

@@ -1,6 +1,6 @@
 // Tuning requests that the page makes from answers: for a candidate of Identify, for the same request with another
 // lambda for one of its entries, and for the same subject with every method.
-import type { Candidate, Entry, GivenController, IdentifyRequest, Implement, Method, Model, Plant, Result, TuneEntry, TuningRequest, TypedSettings } from "../api/types.ts";
+import type { Candidate, Entry, GivenController, IdentifyRequest, Implement, Method, Model, OwnStep, Plant, Result, TuneEntry, TuningRequest, TypedSettings } from "../api/types.ts";
 
 /** The subject for a candidate that was chosen on Identify: its record if that leads to the same model again, else
     its plant. */
@@ -37,6 +37,12 @@ export function withImplement(request: TuningRequest, implement: Implement | nul
   const { y_span: _y, u_span: _u, sample_time: _time, ...others } = before ?? {};
   return { ...rest, implement: before?.product === implement.product ? { ...others, ...implement } : implement };
 }
+
+/** The same request with the user's own step. */
+export const withOwnStep = (request: TuningRequest, own_step: OwnStep): TuningRequest => ({
+  ...request,
+  evaluate: { ...request.evaluate, own_step },
+});
 
 /** Today's settings as the request has them; undefined if it has none, or has them found in the record. */
 export const givenBaseline = ({ baseline }: TuningRequest): GivenController | undefined =>

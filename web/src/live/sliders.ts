@@ -24,6 +24,8 @@ export interface SliderSpec {
   along?: readonly string[];
   /** The value of this quantity that a design reached: less or more than requested. */
   reached?(entry: Entry): number | null;
+  /** It limits that quantity, and nothing as long as it has no value. */
+  limit?: boolean;
   /** Its name. */
   figure?: OptionSlider["value_of"];
 }
@@ -108,13 +110,15 @@ export function optionSliders(tune: TuneEntry, entry: Entry, method: Method | un
     (option.slider.value_of ? FIGURES[option.slider.value_of](entry) : null);
   const chosen = (option: Movable): boolean => {
     const group = options.filter(({ slider }) => slider.group === option.slider.group);
-    const one = group.find(({ id }) => at(tune, id) !== null) ?? [...group].reverse().find((other) => valueOf(other) !== null) ?? group.at(-1);
+    const known = [...group].reverse().find((other) => valueOf(other) !== null);
+    const last = group.at(-1)?.slider.value_of ? undefined : group.at(-1);
+    const one = group.find(({ id }) => at(tune, id) !== null) ?? known ?? last;
     return !option.slider.group || option === one;
   };
   return options.filter((option) => chosen(option) && !(tied && option.slider.moves_with)).flatMap((option) => {
     const { id, schema, slider } = option;
     const value = valueOf(option);
-    const ends = endsOf(schema, slider, value, entry);
+    const ends = endsOf(schema, slider, value ?? (slider.reached ? FIGURES[slider.reached](entry) : null), entry);
     const along = options.flatMap((other) => (other.slider.moves_with === id ? [other.id] : []));
     const { label, low, high, step, reached } = slider;
     return ends
@@ -131,6 +135,7 @@ export function optionSliders(tune: TuneEntry, entry: Entry, method: Method | un
             schema: numberSchema(schema),
             along,
             ...(reached ? { reached: FIGURES[reached], figure: reached } : {}),
+            ...(reached && !slider.value_of && !slider.group ? { limit: true } : {}),
           },
         ]
       : [];

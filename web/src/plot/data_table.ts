@@ -2,6 +2,7 @@
 import { h } from "../dom.ts";
 import { tickText } from "./axis.ts";
 import type { Frame } from "./frame.ts";
+import { partsOf } from "./readout.ts";
 
 const MAX_ROWS = 60;
 
@@ -11,6 +12,7 @@ export function dataTable(frame: Frame): HTMLElement {
     {},
     frame.panes.map((pane) => {
       const traces = pane.traces;
+      const { unit } = partsOf(pane.y.label);
       const longest = Math.max(0, ...traces.map((trace) => trace.x.length));
       const rows = Math.min(longest, MAX_ROWS);
       const at = (row: number, length: number): number =>
@@ -31,7 +33,7 @@ export function dataTable(frame: Frame): HTMLElement {
             traces.map((trace) => [
               trace.parameter ? h("th", { scope: "col" }, frame.cursorLabel) : null,
               h("th", { scope: "col" }, frame.x.label),
-              h("th", { scope: "col" }, trace.name),
+              h("th", { scope: "col" }, unit ? `${trace.name} (${unit})` : trace.name),
             ]),
           ),
         ),

@@ -44,6 +44,21 @@ function legend(frame: Frame, width: number): TreeNode[] {
   return nodes;
 }
 
+/** "TIC-101: Set-point step". */
+const fullTitle = ({ subject, title }: Frame): string => (subject ? `${subject}: ${title}` : title);
+
+/** The longest name of a subject in the name of a file. */
+const LONGEST_NAME = 40;
+
+/** "TIC-101-set-point-step", for a file: only characters that every system takes. */
+export function fileNameOf({ subject = "", fileName }: Pick<Frame, "subject" | "fileName">): string {
+  const name = subject
+    .replace(/[^\p{L}\p{N}_.-]+/gu, "-")
+    .replace(/^[-.]+|[-.]+$/g, "")
+    .slice(0, LONGEST_NAME);
+  return name ? `${name}-${fileName}` : fileName;
+}
+
 /** A complete SVG document of the plot with its zoom, title, description, legend and background. */
 export function frameToSvg(frame: Frame, view: View, width: number, height: number, palette: Palette): string {
   const layout = layoutFrame(frame, width, height, view);
@@ -57,10 +72,10 @@ export function frameToSvg(frame: Frame, view: View, width: number, height: numb
       "font-family": FONTS,
       role: "img",
     },
-    node("title", {}, frame.title),
+    node("title", {}, fullTitle(frame)),
     node("desc", {}, frame.description),
     node("rect", { width, height: height + HEADER, fill: "var(--surface)" }),
-    node("text", { x: 14, y: 18, fill: "var(--text)", "font-size": 14, "font-weight": 600 }, frame.title),
+    node("text", { x: 14, y: 18, fill: "var(--text)", "font-size": 14, "font-weight": 600 }, fullTitle(frame)),
     ...legend(frame, width),
     node("g", { transform: `translate(0 ${HEADER})` }, ...drawLayout(frame, layout, "pane")),
   );

@@ -61,6 +61,8 @@ export interface Pane {
 
 export interface Frame {
   title: string;
+  /** Whose data these are, such as the loop's name: a part of the titles and names of files. */
+  subject?: string;
   /** One or two sentences with the main figures: the plot's text for readers who do not see it. */
   description: string;
   x: Axis;

@@ -6,6 +6,8 @@ import type { Announce, Plot } from "./plot.ts";
 
 export interface PlotGrid {
   element: HTMLElement;
+  /** Whose plots these are, in exports; "": not known. For the frames that are shown from now on. */
+  setSubject(subject: string): void;
   /** Null removes the plot. */
   show(key: string, frame: Frame | null): void;
   /** While a control that changes the frames is held, their axes only grow. */
@@ -17,6 +19,7 @@ export interface PlotGrid {
 
 export function plotGrid(announce: Announce): PlotGrid {
   const plots = new Map<string, Plot>();
+  let subject = "";
   const element = h("div", { class: "plots" });
   const remove = (key: string): void => {
     const plot = plots.get(key);
@@ -27,9 +30,13 @@ export function plotGrid(announce: Announce): PlotGrid {
   };
   return {
     element,
-    show(key, frame) {
+    setSubject(name) {
+      subject = name;
+    },
+    show(key, given) {
       const plot = plots.get(key);
-      if (!frame) return remove(key);
+      if (!given) return remove(key);
+      const frame = subject ? { ...given, subject } : given;
       if (plot) return plot.update(frame);
       const made = createPlot(frame, announce);
       plots.set(key, made);

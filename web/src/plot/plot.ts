@@ -3,7 +3,7 @@ import { closesItself, h, node, say, setAttribute, svgElement, svgWriter, unique
 import { joinLink, moveCursor, zoomTogether } from "./cursor.ts";
 import type { CursorPosition, Listener } from "./cursor.ts";
 import { dataTable } from "./data_table.ts";
-import { download, exportHeight, frameToCsv, frameToSvg, lightPalette, svgToPng } from "./export.ts";
+import { download, exportHeight, fileNameOf, frameToCsv, frameToSvg, lightPalette, svgToPng } from "./export.ts";
 import { enlarging } from "./enlarge.ts";
 import type { Frame } from "./frame.ts";
 import { isGrab } from "./grab.ts";
@@ -171,13 +171,13 @@ export function createPlot(
   async function save(kind: "svg" | "png" | "csv"): Promise<void> {
     exportMenu.open = false;
     const { width, height } = layout;
-    if (kind === "csv") {
-      download(new Blob([frameToCsv(frame)], { type: "text/csv" }), `${frame.fileName}.csv`);
-      return;
-    }
-    const markup = frameToSvg(frame, view, width, height, lightPalette());
-    if (kind === "svg") download(new Blob([markup], { type: "image/svg+xml" }), `${frame.fileName}.svg`);
-    else download(await svgToPng(markup, width, exportHeight(height)), `${frame.fileName}.png`);
+    const { subject } = given;
+    const saved: Frame = subject ? { ...frame, subject } : frame;
+    const file = `${fileNameOf(saved)}.${kind}`;
+    if (kind === "csv") return download(new Blob([frameToCsv(saved)], { type: "text/csv" }), file);
+    const markup = frameToSvg(saved, view, width, height, lightPalette());
+    if (kind === "svg") download(new Blob([markup], { type: "image/svg+xml" }), file);
+    else download(await svgToPng(markup, width, exportHeight(height)), file);
   }
 
   const moveTo = (value: number | null): void =>

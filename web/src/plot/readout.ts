@@ -62,8 +62,15 @@ function nearestOnCurve(box: PaneBox, traces: Trace[], point: { x: number; y: nu
 
 const short = (value: number): string => tickText(Number(value.toPrecision(4)));
 
-/** "time 12 s", then "name value" of each trace at the cursor. */
+/** Name and unit of an axis: of "time (s)" "time" and "s"; without a unit "". */
+export function partsOf(label: string): { name: string; unit: string } {
+  const [, name = label, unit = ""] = /^(.*?)(?: \((.*)\))?$/.exec(label) ?? [];
+  return { name, unit };
+}
+
+/** "time 12 s", then "name value unit" of each trace at the cursor. */
 export function readings(frame: Frame, box: PaneBox, value: number): string[] {
+  const { unit: ofPane } = partsOf(box.pane.y.label);
   const parts: string[] = [];
   let at: number | null = null;
   for (const trace of box.pane.traces) {
@@ -76,10 +83,10 @@ export function readings(frame: Frame, box: PaneBox, value: number): string[] {
     parts.push(
       trace.parameter && typeof x === "number"
         ? `${trace.name} ${short(x)} ${y < 0 ? "−" : "+"} ${short(Math.abs(y))}i`
-        : `${trace.name} ${short(y)}`,
+        : `${trace.name} ${short(y)}${ofPane ? ` ${ofPane}` : ""}`,
     );
   }
-  const [, name = frame.cursorLabel, unit = ""] = /^(.*?)(?: \((.*)\))?$/.exec(frame.cursorLabel) ?? [];
+  const { name, unit } = partsOf(frame.cursorLabel);
   return [`${name} ${short(at ?? value)}${unit ? ` ${unit}` : ""}`, ...parts];
 }
 

@@ -1,12 +1,12 @@
 // Compare: every method on this plant in one table, and the chosen rows together in every plot.
-import { isFinal } from "../api/types.ts";
+import { isFinal, nameOf } from "../api/types.ts";
 import type { Job, Result } from "../api/types.ts";
 import { defaultOverlay, drawnEntries } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { LINEAR_NOTE, hasLinear } from "../charts/responses.ts";
 import { h } from "../dom.ts";
 import { asksForAll } from "../form/tuning_request.ts";
-import { csvText, download } from "../plot/export.ts";
+import { csvText, download, fileNameOf } from "../plot/export.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
 import { formatRoute } from "../routes.ts";
@@ -103,7 +103,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     const every = comparisonColumns(unitNames(job.request?.units));
     const rows = comparisonRows(job.result, controls.limit());
     const blob = new Blob([csvText(tableOf(rows, every))], { type: "text/csv" });
-    download(blob, "comparison-table.csv");
+    download(blob, `${fileNameOf({ subject: nameOf(job), fileName: "comparison-table" })}.csv`);
   }
 
   function arrange(): void {
@@ -126,6 +126,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
 
   function showPlots(job: Job, drawn: Drawn[]): void {
     const request = job.request;
+    plots.setSubject(nameOf(job));
     showEntryPlots(plots, drawn, request);
     linearNote.hidden = !hasLinear(drawn);
     const plant = job.result?.model?.plant ?? job.result?.linear_model ?? request?.plant;

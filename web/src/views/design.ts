@@ -1,19 +1,21 @@
 // Design: the verdict, the settings to enter, the figures and the plots of a job; its progress while it runs.
 import { cancelJob } from "../api/jobs.ts";
 import { isRangeRequest } from "../api/range.ts";
-import { isFinal } from "../api/types.ts";
+import { isFinal, nameOf } from "../api/types.ts";
 import type { Job, Result, TuningRequest } from "../api/types.ts";
 import { defaultDrawn, drawnEntries, entryNames, proposedEntry } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { recordFrame } from "../charts/record.ts";
 import { LINEAR_NOTE, hasLinear } from "../charts/responses.ts";
 import { h, keepFocus } from "../dom.ts";
-import { withLambda } from "../form/tuning_request.ts";
+import { readStep } from "../form/own_step.ts";
+import type { StepTexts } from "../form/own_step.ts";
+import { withLambda, withOwnStep } from "../form/tuning_request.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
 import { rangeJobCard } from "../range/job_result.ts";
 import { showRangeVerdict } from "../range/result_cards.ts";
-import { formatRoute } from "../routes.ts";
+import { formatRoute, rewriteAddress } from "../routes.ts";
 import { shown } from "../store.ts";
 import type { Store, Workspace } from "../store.ts";
 import { figureGroups } from "../words/figures.ts";
@@ -21,6 +23,7 @@ import { unitNames } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { cureButtons } from "./cures.ts";
 import { operatingCard } from "./cards/operating_card.ts";
+import { ownStepCard } from "./cards/own_step_card.ts";
 import { progressCard } from "./cards/progress_card.ts";
 import { replayCard } from "./cards/replay_card.ts";
 import { reportCards } from "./cards/report_cards.ts";
@@ -90,11 +93,19 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const legend = createLegend(store);
   const plots = plotGrid(announce);
   const replay = replayCard(plots);
+  const ownStep = ownStepCard({
+    announce,
+    onChange: changeStep,
+    onJudged: () => sayVerdict(),
+    onKeep: keepStep,
+  });
   const linearNote = h("p", { class: "hint", hidden: true }, LINEAR_NOTE);
   let finished: { job: Job; result: Result } | null = null;
   let screen: OnScreen | null = null;
   /** The job on the cards. */
   let screenOf = "";
+  /** Shows the verdict, with what it says of the step that was typed. */
+  let sayVerdict = (): void => undefined;
   const modified = modifiedDesign(store, announce, {
     onAnswer: showModified,
     onLate: (late) => {
@@ -103,7 +114,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     },
     onHold: plots.hold,
     onKeep: async (request, index) => {
-      const job = await replace(request, index);
+      const job = await replace(withStep(request), index);
       return job && { job, index };
     },
   });
@@ -116,7 +127,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     h("div", { class: "more-cards" }, ...reportsAt("below"), ...own.below, computed),
   );
   const followsLater = h("p", { class: "hint", hidden: true }, "The figures below follow when you release the slider.");
-  const below = h("div", { class: "below" }, followsLater, replay.element, model, ...reportsAt("above"), notes, more);
+  const below = h("div", { class: "below" }, followsLater, ownStep.element, replay.element, model, ...reportsAt("above"), notes, more);
   const said = h("div", { class: "verdict-column" }, trouble, verdict, cures.element, progress.element, range.element, legend.element);
   const head = h("div", { class: "design-head" }, own.answer, said);
   const left = h("div", { class: "left-column" }, modified.controls, modified.front);
@@ -155,6 +166,29 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     }
   }
 
+  /** With the step that was typed. */
+  function withStep(request: TuningRequest): TuningRequest {
+    const { step: texts } = store.get();
+    const step = texts && readStep(texts).step;
+    return step ? withOwnStep(request, step) : request;
+  }
+
+  /** The address follows the step as typed. */
+  function changeStep(step: StepTexts | null): void {
+    const { route } = store.get();
+    if (route.screen !== "design") return;
+    const { step: _before, ...bare } = route;
+    const next = { ...bare, ...(step ? { step } : {}) };
+    store.set((workspace) => ({ ...workspace, step, route: next }));
+    rewriteAddress(route, next);
+  }
+
+  async function keepStep(): Promise<void> {
+    const step = ownStep.step();
+    if (!screen || !step) return;
+    await replace(withOwnStep(screen.request ?? {}, step), modified.answer()?.kept ?? screen.index);
+  }
+
   async function retuneWhole(request: TuningRequest): Promise<void> {
     if (screen) await replace(request, screen.index);
   }
@@ -184,19 +218,22 @@ export function designView(store: Store, announce: (sentence: string) => void, e
 
   /** Updates the parts that follow a slider: verdict, settings, figures and plots. */
   function showMoving(job: Job, whole: Result, workspace: Workspace, held: boolean): Drawn[] {
-    screen = modified.onScreen(job, whole, selectedEntry(whole, workspace));
+    const modifiedNow = modified.onScreen(job, whole, selectedEntry(whole, workspace));
+    screen = { ...modifiedNow, request: modifiedNow.request && withStep(modifiedNow.request) };
     const { result, index, origin } = screen;
-    title.setShown(screen, result === whole);
+    title.setShown(screen, result === whole && !workspace.step);
     const entries = result.controllers;
     const names = entryNames(entries);
     const units = unitNames(job.request?.units);
     const drawn = drawnEntries(result, workspace.drawn ? drawnOf(workspace.drawn, origin) : defaultDrawn(result));
     const listed = listedEntries(entries.length, drawn, index);
     const record = formatRoute({ screen: "identify", job: job.id });
-    keepFocus(verdict, () => showVerdict(verdict, result, names, index, listed, record, units));
+    sayVerdict = () => keepFocus(verdict, () => showVerdict(verdict, ownStep.judged(result), names, index, listed, record, units));
+    sayVerdict();
     if (held) own.move(ownShown(job, whole, index, names[index]!, units));
     showFigures(result, listed, drawn, names, units, held);
     linearNote.hidden = !hasLinear(drawn);
+    plots.setSubject(nameOf(job));
     showEntryPlots(plots, drawn, job.request, index, modified.grips());
     replay.show(whole, drawn, units);
     return drawn;
@@ -231,6 +268,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const units = unitNames(job.request?.units);
     // The record does not change while a slider moves.
     plots.show("record", result.model ? recordFrame(result.model, job.request) : null);
+    ownStep.show({ request: job.request ?? {}, whole, result, drawn, index, units, subject: nameOf(job), texts: workspace.step });
     const listed = listedEntries(entries.length, drawn, index);
     element.classList.toggle("broad", listed.length >= BROAD_FROM);
     // Rules and robustness of a nonlinear plant use its linear model.
@@ -303,7 +341,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     }
   }
 
-  const parts = (["job", "jobTrouble", "selected", "drawn", "sort"] as const).map((name) =>
+  const parts = (["job", "jobTrouble", "selected", "drawn", "sort", "step"] as const).map((name) =>
     store.pick((workspace) => workspace[name]),
   );
   showBody(false);
@@ -319,6 +357,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       modified.dispose();
       for (const card of reports) card.dispose();
       own.dispose();
+      ownStep.dispose();
       range.dispose();
       plots.dispose();
     },

@@ -43,7 +43,7 @@ export function figuresTable(caption: string, columns: TableColumn[], groups: Fi
           h(
             "tr",
             {},
-            h("th", { scope: "row", title: row.meaning }, explained(row.about, row.label)),
+            h("th", { scope: "row", title: row.meaning }, row.about ? explained(row.about, row.label) : row.label),
             columns.map((column) => {
               const value = column.entry.error
                 ? { text: "", why: `${column.name} has no result for this entry.` }

@@ -2,7 +2,8 @@
 import type { Entry, Result, WhyNull } from "../api/types.ts";
 import { limitNote } from "./figures.ts";
 import type { ExplainedName } from "./explained.ts";
-import { formatNumber, formatPercent, product, quotient, withUnit } from "./numbers.ts";
+import { figureUnit } from "./figure_units.ts";
+import { formatNumber, formatPercent, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
 export interface ComparisonRow {
@@ -74,8 +75,8 @@ const ABOUT = {
 
 /** Every column except rank, method and notes, in their order. */
 export function comparisonColumns(units: UnitNames): ComparisonColumn[] {
-  const gain = quotient(units.u, units.y);
-  const error = product(units.y, units.time);
+  const gain = figureUnit("IdealController", "Kp", units);
+  const error = figureUnit("LoadPerformance", "IAE", units);
   const column = (
     id: ExplainedName | keyof typeof ABOUT,
     label: string,

@@ -2,7 +2,8 @@
 import type { Entry, Figures } from "../api/types.ts";
 import type { ExplainedName } from "./explained.ts";
 import { limitNote } from "./figures.ts";
-import { formatNumber, formatPercent, product, withUnit } from "./numbers.ts";
+import { figureUnit } from "./figure_units.ts";
+import { formatNumber, formatPercent, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
 export interface Fact {
@@ -29,7 +30,7 @@ export function factsOf(entry: Entry, today: Entry | undefined, units: UnitNames
   const facts: { label: string; about: ExplainedName; number: number | null; text: (value: number) => string; reference: string }[] = [
     { label: worst === null ? "Ms" : "Worst Ms", about: worst === null ? "Ms" : "worst_Ms", number: worst ?? numberOf(robustness, "Ms"), text: formatNumber, reference: "" },
     {
-      label: withUnit("Load IAE", product(units.y, units.time)),
+      label: withUnit("Load IAE", figureUnit("LoadPerformance", "IAE", units)),
       about: "IAE",
       number: load,
       text: formatNumber,

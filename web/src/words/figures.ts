@@ -1,15 +1,16 @@
 // The figures of an entry, with their names and units, in display order.
 import type { Entry, Figures, WhyNull } from "../api/types.ts";
 import type { ExplainedName } from "./explained.ts";
-import { formatNumber, formatPercent, formatShare, product, quotient, withUnit } from "./numbers.ts";
+import { figureUnit } from "./figure_units.ts";
+import { formatNumber, formatPercent, formatShare, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
 export interface FigureRow {
   label: string;
   /** Explanation of the quantity for readers who do not know it. */
   meaning: string;
-  /** Its longer explanation. */
-  about: ExplainedName;
+  /** Its longer explanation, if there is one. */
+  about: ExplainedName | null;
   value(entry: Entry): FigureValue;
 }
 
@@ -31,7 +32,7 @@ type Part = { why_null?: WhyNull } | undefined;
 const missing = (why: string): FigureValue => ({ text: "", why });
 
 /** A number of one of the entry's objects, with that object's reason if it is null. */
-function numeric(part: Part, name: string, absent: string): FigureValue {
+export function numeric(part: Part, name: string, absent: string): FigureValue {
   const value = (part as Record<string, unknown> | undefined)?.[name];
   if (typeof value === "number" && Number.isFinite(value)) {
     return { text: name.endsWith("_percent") ? formatPercent(value) : formatNumber(value), why: "" };
@@ -39,7 +40,7 @@ function numeric(part: Part, name: string, absent: string): FigureValue {
   return missing(part?.why_null?.[name] ?? absent);
 }
 
-const NOT_GIVEN = "The service gave no figure.";
+export const NOT_GIVEN = "The service gave no figure.";
 
 /** "12.5 (asked 5.00)" if the loop exceeds the limit of its design. */
 function overshoot(entry: Entry): FigureValue {
@@ -84,27 +85,25 @@ export function filterWords(type: string | undefined): string {
 /** `region`: includes the figures of controllers for more than one plant; `nonlinear`: includes those of nonlinear
     ones. */
 export function figureGroups(units: UnitNames, region = false, nonlinear = false): FigureGroup[] {
-  const gain = quotient(units.u, units.y);
-  const error = product(units.y, units.time);
-  const controller = (label: string, name: ExplainedName, meaning: string, absent: string): FigureRow => ({
-    label,
+  const controller = (name: ExplainedName, meaning: string, absent: string): FigureRow => ({
+    label: withUnit(name, figureUnit("NonlinearController", name, units)),
     meaning,
     about: name,
     value: (entry) => numeric(entry.controller as Figures | undefined, name, absent),
   });
   const robustness = (label: string, name: ExplainedName, meaning: string): FigureRow => ({
-    label,
+    label: withUnit(label, figureUnit("Robustness", name, units)),
     meaning,
     about: name,
     value: (entry) => numeric(entry.robustness, name, NOT_GIVEN),
   });
   const performance = (
-    kind: "setpoint" | "load" | "noise",
+    kind: "setpoint" | "load",
     label: string,
     name: ExplainedName,
     meaning: string,
   ): FigureRow => ({
-    label,
+    label: withUnit(label, figureUnit(kind === "load" ? "LoadPerformance" : "SetpointPerformance", name, units)),
     meaning,
     about: name,
     value: (entry) => numeric(entry.performance?.[kind], name, NOT_GIVEN),
@@ -114,19 +113,12 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       title: "Controller",
       main: false,
       rows: [
-        controller(withUnit("Kp", gain), "Kp", "proportional gain", NOT_GIVEN),
-        controller(withUnit("Ti", units.time), "Ti", "integral time", "no integral action"),
-        controller(withUnit("Td", units.time), "Td", "derivative time", "no derivative action"),
+        controller("Kp", "proportional gain", NOT_GIVEN),
+        controller("Ti", "integral time", "no integral action"),
+        controller("Td", "derivative time", "no derivative action"),
         { label: withUnit("Tf", units.time), meaning: "filter time constant", about: "Tf", value: (entry) => filterTime(entry) },
         ...(nonlinear
-          ? [
-              controller(
-                withUnit("delta_r", units.y),
-                "delta_r",
-                "much larger errors hardly enter the integral",
-                "a linear controller",
-              ),
-            ]
+          ? [controller("delta_r", "much larger errors hardly enter the integral", "a linear controller")]
           : []),
       ],
     },
@@ -137,7 +129,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
         robustness("Ms", "Ms", "peak of |S|: 1/Ms is the distance of L from −1; the smaller Ms, the more robust"),
         robustness("Mt", "Mt", "peak of |T|"),
         robustness("Gain margin", "gain_margin", "the loop gain may grow by this factor"),
-        robustness("Phase margin (°)", "phase_margin_deg", "smallest over all crossings"),
+        robustness("Phase margin", "phase_margin_deg", "smallest over all crossings"),
         ...(region ? regionRows() : []),
       ],
     },
@@ -145,18 +137,18 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       title: "Load step",
       main: true,
       rows: [
-        performance("load", withUnit("IAE", error), "IAE", "integrated absolute error: less is better"),
-        performance("load", withUnit("Peak", units.y), "peak", "largest deviation, with its sign"),
+        performance("load", "IAE", "IAE", "integrated absolute error: less is better"),
+        performance("load", "Peak", "peak", "largest deviation, with its sign"),
       ],
     },
     {
       title: "Set-point step",
       main: true,
       rows: [
-        performance("setpoint", withUnit("IAE", error), "IAE", "integrated absolute error"),
+        performance("setpoint", "IAE", "IAE", "integrated absolute error"),
         { label: "Overshoot (%)", meaning: "of the step; in brackets the limit", about: "overshoot_percent", value: overshoot },
-        performance("setpoint", withUnit("Settling", units.time), "settling_time", "last time outside 2 % of the step"),
-        performance("setpoint", withUnit("TV of u", units.u), "TV", "total movement of the controller's output"),
+        performance("setpoint", "Settling", "settling_time", "last time outside 2 % of the step"),
+        performance("setpoint", "TV of u", "TV", "total movement of the controller's output"),
       ],
     },
     {
@@ -169,8 +161,8 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
           about: "filter",
           value: (entry) => ({ text: filterWords(entry.controller?.filter?.type), why: "" }),
         },
-        controller("b", "b", "set-point weight of P", "1 by default"),
-        controller("c", "c", "set-point weight of D", "0 by default"),
+        controller("b", "set-point weight of P", "1 by default"),
+        controller("c", "set-point weight of D", "0 by default"),
         {
           label: withUnit("Longest sample time", units.time),
           meaning: "of a program: Ms stays within 5 %",
@@ -192,13 +184,13 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       title: "Robustness, other figures",
       main: false,
       rows: [
-        robustness(withUnit("Mks", gain), "Mks", "peak of |CS|: how much noise may reach u"),
+        robustness("Mks", "Mks", "peak of |CS|: how much noise may reach u"),
         robustness("Gain margin, low", "gain_margin_low", "the loop gain may fall to this fraction"),
-        robustness(withUnit("Delay margin", units.time), "delay_margin", "the loop is stable with this much more dead time"),
-        robustness(`ω of Ms (rad/${units.time})`, "omega_Ms", "where |S| peaks"),
-        robustness(`ω of Mt (rad/${units.time})`, "omega_Mt", "where |T| peaks"),
-        robustness(`Gain crossover (rad/${units.time})`, "gain_crossover", "where |L| = 1"),
-        robustness(`Phase crossover (rad/${units.time})`, "phase_crossover", "where L is at −180°"),
+        robustness("Delay margin", "delay_margin", "the loop is stable with this much more dead time"),
+        robustness("ω of Ms", "omega_Ms", "where |S| peaks"),
+        robustness("ω of Mt", "omega_Mt", "where |T| peaks"),
+        robustness("Gain crossover", "gain_crossover", "where |L| = 1"),
+        robustness("Phase crossover", "phase_crossover", "where L is at −180°"),
       ],
     },
     {
@@ -207,8 +199,8 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       rows: [
         performance("load", "ISE", "ISE", "integrated squared error"),
         performance("load", "ITAE", "ITAE", "integrated absolute error, weighted by time"),
-        performance("load", withUnit("Recovery", units.time), "recovery_time", "last time outside 2 % of the peak"),
-        performance("load", withUnit("TV of u", units.u), "TV", "total movement of the controller's output"),
+        performance("load", "Recovery", "recovery_time", "last time outside 2 % of the peak"),
+        performance("load", "TV of u", "TV", "total movement of the controller's output"),
       ],
     },
     {
@@ -217,8 +209,8 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       rows: [
         performance("setpoint", "ISE", "ISE", "integrated squared error"),
         performance("setpoint", "ITAE", "ITAE", "integrated absolute error, weighted by time"),
-        performance("setpoint", withUnit("Rise", units.time), "rise_time", "from 10 % to 90 %"),
-        performance("setpoint", withUnit("First move of u", units.u), "first_move", "u right after the step"),
+        performance("setpoint", "Rise", "rise_time", "from 10 % to 90 %"),
+        performance("setpoint", "First move of u", "first_move", "u right after the step"),
       ],
     },
   ];

@@ -1,5 +1,6 @@
 // Jobs in lists: their cells in words, and the orders of a batch.
 import type { Controller, ListedJob, Outline, Plant } from "../api/types.ts";
+import { figureUnit } from "./figure_units.ts";
 import { DASH, formatNumber, formatParameter, formatSetting, quotient, unitNames, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 import { plantTitle, plantWords } from "./plant.ts";
@@ -105,8 +106,18 @@ const FIRST_COLUMNS: BatchColumn[] = [
   },
 ];
 
+/** The unit in the heading if it is that of all loops, else in each cell. */
+function loadColumn(jobs: readonly ListedJob[]): BatchColumn {
+  const unitOf = (units: UnitNames): string => figureUnit("LoadPerformance", "IAE", units);
+  const shared = sharedUnits(jobs);
+  const column = numbered("iae", shared ? withUnit("Load IAE", unitOf(shared)) : "Load IAE", (job) => job.outline?.load_IAE, true);
+  return {
+    ...column,
+    text: (job) => (shared || column.value(job) === null ? column.text(job) : `${column.text(job)} ${unitOf(unitNames(job.outline?.units))}`.trim()),
+  };
+}
+
 const LAST_COLUMNS: BatchColumn[] = [
-  numbered("iae", "Load IAE", (job) => job.outline?.load_IAE, true),
   {
     id: "gain",
     label: "Gain over today",
@@ -150,10 +161,14 @@ const SIDES: { mark: string; of(job: ListedJob): Pick<Outline, "controller" | "t
   { mark: "", of: (job) => job.outline },
 ];
 
+/** The units of all loops that were tuned, if they are common. */
+function sharedUnits(jobs: readonly ListedJob[]): UnitNames | undefined {
+  const all = jobs.filter((job) => job.outline?.controller).map((job) => unitNames(job.outline?.units));
+  return all.every((units) => JSON.stringify(units) === JSON.stringify(all[0])) ? all[0] : undefined;
+}
+
 function settingColumns(jobs: readonly ListedJob[]): BatchColumn[] {
-  const tuned = jobs.filter((job) => job.outline?.controller);
-  const all = tuned.map((job) => unitNames(job.outline?.units));
-  const shared = all.every((units) => JSON.stringify(units) === JSON.stringify(all[0])) ? all[0] : undefined;
+  const shared = sharedUnits(jobs);
   return SETTINGS.flatMap(({ id, unit, read }) =>
     SIDES.map(({ mark, of }) => {
       const value = (job: ListedJob): number | null => {
@@ -204,7 +219,7 @@ const ALWAYS = ["index", "name", "status"];
 /** The columns for these loops: description, settings to enter, results; without columns that would hold only
     dashes. */
 export function batchColumns(jobs: readonly ListedJob[]): BatchColumn[] {
-  return [...FIRST_COLUMNS, ...typedColumns(jobs), ...settingColumns(jobs), ...LAST_COLUMNS].filter(
+  return [...FIRST_COLUMNS, ...typedColumns(jobs), ...settingColumns(jobs), loadColumn(jobs), ...LAST_COLUMNS].filter(
     (column) => ALWAYS.includes(column.id) || jobs.length === 0 || jobs.some((job) => column.text(job) !== DASH),
   );
 }

@@ -1,6 +1,8 @@
 // "Was the test good enough?": the service's findings about the record, in words. Figures that the page does not know
 // are shown by their names.
 import type { Model, Notice, Plant } from "../api/types.ts";
+import { figureUnit } from "./figure_units.ts";
+import type { MeasuredType } from "./figure_units.ts";
 import { formatNumber, formatParameter, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 import { plantWords } from "./plant.ts";
@@ -96,7 +98,7 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
     "time_unit_assumed",
     "why_null",
   ]);
-  for (const [name, value] of Object.entries(quality)) if (!known.has(name)) rows.push(...otherRows(name, value));
+  for (const [name, value] of Object.entries(quality)) if (!known.has(name)) rows.push(...otherRows(name, value, figureUnit("DataQuality", name, units), units));
   return rows;
 }
 
@@ -114,20 +116,28 @@ function noiseWords(noise: number, model: Model): string {
     : formatNumber(noise, 2);
 }
 
-/** A figure that was added to the contract after this page was written. */
-function otherRows(name: string, value: unknown): [string, string][] {
-  const label = name.charAt(0).toUpperCase() + name.slice(1).replaceAll("_", " ");
+/** The types of parts of the quality. */
+const PARTS: Record<string, MeasuredType> = { pretest: "PreTest", gaps: "MissingPart", missing: "MissingPart" };
+
+const isNumbers = (value: unknown): value is number[] => Array.isArray(value) && value.every((item) => typeof item === "number");
+
+/** A figure without words of its own here, under its name in the contract. */
+function otherRows(name: string, value: unknown, unit: string, units: UnitNames): [string, string][] {
+  const label = withUnit(name.charAt(0).toUpperCase() + name.slice(1).replaceAll("_", " "), unit);
   if (typeof value === "number") return [[label, formatParameter(value)]];
   if (typeof value === "boolean") return [[label, value ? "yes" : "no"]];
   if (typeof value === "string" && value !== "") return [[label, value.replaceAll("_", " ")]];
+  if (isNumbers(value) && value.length === 2) return [[label, value.map(formatParameter).join(" to ")]];
   if (Array.isArray(value)) {
     const texts = listOf(value);
     return value.length === 0 ? [] : [[label, texts.length === value.length ? texts.join(", ") : String(value.length)]];
   }
-  if (typeof value === "object" && value !== null)
+  if (typeof value === "object" && value !== null) {
+    const type = PARTS[name];
     return Object.entries(value).flatMap(([inner, item]) =>
-      inner === "why_null" ? [] : otherRows(`${name} ${inner}`, item),
+      inner === "why_null" ? [] : otherRows(`${name} ${inner}`, item, type ? figureUnit(type, inner, units) : "", units),
     );
+  }
   return [];
 }
 

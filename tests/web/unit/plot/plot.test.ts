@@ -2,11 +2,12 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { nearestIndex } from "../../../../web/src/plot/cursor.ts";
 import { columnExtremes, drawableRuns } from "../../../../web/src/plot/dense.ts";
-import { frameToCsv, frameToSvg } from "../../../../web/src/plot/export.ts";
+import { fileNameOf, frameToCsv, frameToSvg } from "../../../../web/src/plot/export.ts";
 import type { Frame, Mark } from "../../../../web/src/plot/frame.ts";
 import { markLabels } from "../../../../web/src/plot/labels.ts";
 import { layoutFrame, wholeView } from "../../../../web/src/plot/layout.ts";
 import { drawLayout, pointNear, tracePath } from "../../../../web/src/plot/marks.ts";
+import { readings } from "../../../../web/src/plot/readout.ts";
 import { zoomAbout, zoomToRectangle } from "../../../../web/src/plot/zoom.ts";
 
 const plane: Frame = {
@@ -255,4 +256,21 @@ test("names of marks stand neither on one another nor where the curve runs, wher
   const x = [...Array(200).keys()].map((k) => k / 100);
   const crossed: Frame = { ...frame, panes: [{ ...frame.panes[0]!, traces: [{ name: "y", look: 1, x, y: x.map(() => 1.06) }], marks: [level(1, "limit")] }] };
   assert.ok(Number(boxes(crossed)[0]!["y"]) > layoutFrame(crossed, 400, 300, wholeView(crossed)).boxes[0]!.y.toPixel(1));
+});
+
+test("values at the cursor have the unit of their axis, those of a plane none", () => {
+  const measured: Frame = { ...times, cursorLabel: "time (s)", panes: [{ ...times.panes[0]!, y: { kind: "linear", label: "y (°C)" } }, times.panes[1]!] };
+  const boxes = layoutFrame(measured, 500, 300, wholeView(measured)).boxes;
+  assert.deepEqual(readings(measured, boxes[0]!, 1), ["time 1 s", "a 1 °C"]);
+  assert.deepEqual(readings(measured, boxes[1]!, 2), ["time 2 s", "a 10"]);
+  const [curve] = layoutFrame(plane, 500, 300, wholeView(plane)).boxes;
+  assert.equal(readings(plane, curve!, 2)[1], "trace 1 0 + 0.5i");
+});
+
+test("an export says whose plot it is, in its title and in a file name that every system takes", () => {
+  const owned: Frame = { ...plane, subject: "TIC-101 <heater>/Öl" };
+  assert.match(frameToSvg(owned, wholeView(owned), 500, 300, () => "#000000"), /<title>TIC-101 &lt;heater&gt;\/Öl: Curve &lt;&amp;&gt; circle<\/title>/);
+  assert.equal(fileNameOf(owned), "TIC-101-heater-Öl-plane");
+  assert.equal(fileNameOf({ ...plane, subject: "../*" }), "plane", "nothing is left of the name");
+  assert.equal(fileNameOf(plane), "plane");
 });

@@ -108,6 +108,7 @@ export function controlsCard(live: Live): ControlsCard {
         log: spec.log,
         ...(spec.step || spec.log ? { step: spec.step ?? RELATIVE_STEP } : {}),
         ...(spec.ends ? { ends: spec.ends } : {}),
+        ...(spec.limit ? { unset: "none" } : {}),
         pointer: () => null,
         wrong: (value) => wrongValue(spec, value),
         spoken: (value) => spoken(spec, value),

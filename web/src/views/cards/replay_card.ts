@@ -6,7 +6,8 @@ import { replayFrame, withReplays } from "../../charts/replay.ts";
 import { h, uniqueId } from "../../dom.ts";
 import type { PlotGrid } from "../../plot/grid.ts";
 import { swatch } from "../../plot/marks.ts";
-import { formatNumber, product, withUnit } from "../../words/numbers.ts";
+import { figureUnit } from "../../words/figure_units.ts";
+import { formatNumber, withUnit } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 
 export interface ReplayCard {
@@ -69,7 +70,7 @@ function figuresTable(recorded: NonNullable<Result["replay"]>, replayed: Drawn[]
   const row = (label: string, values: string[]): HTMLElement =>
     h("tr", {}, h("th", { scope: "row" }, label), values.map((value) => h("td", {}, value)));
   const figures = (label: string, name: keyof NonNullable<Replay["figures"]>): HTMLElement =>
-    row(label, columns.map((column) => formatNumber(column.figures?.[name])));
+    row(withUnit(label, figureUnit("ReplayFigures", name, units)), columns.map((column) => formatNumber(column.figures?.[name])));
   return h(
     "table",
     { class: "figures" },
@@ -89,9 +90,9 @@ function figuresTable(recorded: NonNullable<Result["replay"]>, replayed: Drawn[]
       "tbody",
       {},
       row("IAE, divided by the record's", ["1", ...replayed.map(({ entry }) => ratioWords(entry.replay!))]),
-      figures(withUnit("IAE", product(units.y, units.time)), "IAE"),
-      figures(withUnit("Largest error", units.y), "largest_error"),
-      figures(withUnit("Travel of u", units.u), "travel"),
+      figures("IAE", "IAE"),
+      figures("Largest error", "largest_error"),
+      figures("Travel of u", "travel"),
       figures("Reversals of u", "reversals"),
     ),
   );

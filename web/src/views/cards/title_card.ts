@@ -1,5 +1,6 @@
 // The subject of a job: its name, its plant, and links to the next steps. Head of every screen that shows a job.
 import { isRangeRequest } from "../../api/range.ts";
+import { nameOf } from "../../api/types.ts";
 import type { Job, Plant, TuningRequest } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import type { Child } from "../../dom.ts";
@@ -63,7 +64,7 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       if (!job) return;
       const request = job.request;
       const plant = job.result?.model?.plant ?? request?.plant;
-      heading.textContent = job.name || request?.name || screen;
+      heading.textContent = nameOf(job) || screen;
       const range = isRangeRequest(request) ? request : null;
       plantLine.textContent = range
         ? rangeWords(range)

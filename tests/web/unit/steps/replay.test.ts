@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { Entry, Result } from "../../../web/src/api/types.ts";
-import { drawnEntries } from "../../../web/src/charts/drawn.ts";
-import { replayFrame, withReplays } from "../../../web/src/charts/replay.ts";
+import type { Entry, Result } from "../../../../web/src/api/types.ts";
+import { drawnEntries } from "../../../../web/src/charts/drawn.ts";
+import { replayFrame, withReplays } from "../../../../web/src/charts/replay.ts";
 
 const units = { time: "min", u: "%", y: "°C" };
 const figures = { IAE: 40, largest_error: 5, travel: 30, reversals: 4 };

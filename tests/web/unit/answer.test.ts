@@ -41,12 +41,14 @@ test("a record of a loop has a set point, a measurement and an output", () => {
 test("settings found in a record are written with their errors and remarks, in the product's own names where it has them", () => {
   const found = (identified: object, rest: object = {}): ControllerInRecord =>
     ({
-      identified: { controller: { form: "ideal", Kp: 0.8, Ti: 60, Td: 1e-5 }, warnings: [], standard_errors: { Kp: 0.01, Ti: 1.5, Td: 2e-5 }, ...identified },
+      identified: { controller: { form: "ideal", Kp: 0.8, Ti: 60, Td: 0 }, warnings: [], standard_errors: { Kp: 0.01, Ti: 1.5 }, ...identified },
       ...rest,
     }) as unknown as ControllerInRecord;
   const uncertain = found({ warnings: [{ detail: "Kp is uncertain." }] });
   assert.equal(foundWords(uncertain, null, "s"), "From the record: Kp 0.800 ± 0.010, Ti 60.0 ± 1.5 s. Kp is uncertain.");
-  assert.equal(foundWords(found({ standard_errors: {} }), null, "min"), "From the record: Kp 0.8, Ti 60 min, Td 1.000e−5 min.");
+  assert.equal(foundWords(found({ standard_errors: {} }), null, "min"), "From the record: Kp 0.8, Ti 60 min.");
+  const wide = found({ standard_errors: { Kp: 0.1, Ti: 80 } });
+  assert.equal(foundWords(wide, null, "s"), "From the record: Kp 0.80 ± 0.10, Ti 60 ± 80 s.");
   const parameters = ["GAIN", "Reset", "FORM"].map((label) => ({ name: label.toUpperCase(), label, low: null, high: null, resolution: null }));
   const product = { action: {}, parameters } as unknown as Product;
   const typing = {

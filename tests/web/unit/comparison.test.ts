@@ -291,8 +291,25 @@ test("a link holds a request's model, units, controller, today's settings and op
   const longer = parseRoute(formatRoute({ ...link, values: { ...link.values, "how.robust": "x".repeat(5000) } }));
   assert.ok(longer.screen === "new" && longer.values["today.1"] === "1.2" && longer.values["how"] === undefined);
   assert.equal(linkOf({ record: { csv: "t,u,y" }, tune: "all" }), null);
-  const typed = linkOf({ plant: request.plant, baseline: { product: "p", settings: { GAIN: 1.5, ON: true } } })!;
+  const implement = { product: "p", y_span: [0, 200] as [number, number] };
+  const baseline = { ...implement, settings: { GAIN: 1.5, ON: true } };
+  const typed = linkOf({ plant: request.plant, baseline, implement })!;
   assert.deepEqual([typed.values["today.form"], typed.values["today.set.GAIN"], typed.values["today.set.ON"]], ["own", "1.5", "true"]);
+});
+
+test("a request that a link cannot hold has no link", () => {
+  const { plant } = { plant: { type: "fopdt", K: 1, T: 2, L: 1 } };
+  const implement = { product: "p", y_span: [0, 200] as [number, number] };
+  const settings = { GAIN: 1.5 };
+  for (const request of [
+    { plant, tune: "all" as const },
+    { plant, tune: [] },
+    { plant, baseline: { product: "p", settings } },
+    { plant, baseline: { product: "q", y_span: implement.y_span, settings }, implement },
+    { plant, baseline: { product: "p", y_span: [0, 100] as [number, number], settings }, implement },
+  ])
+    assert.equal(linkOf(request), null, JSON.stringify(request));
+  assert.notEqual(linkOf({ plant, tune: [{ method: "simc" }] }), null);
 });
 
 test("a link to a job says how long it works", () => {

@@ -40,15 +40,28 @@ function todayTexts(baseline: TuningRequest["baseline"]): Record<string, string>
 }
 
 function methodTexts(tune: TuningRequest["tune"]): Record<string, string> {
-  if (!Array.isArray(tune) || asksForAll(tune)) return {};
+  if (!Array.isArray(tune)) return {};
   const options = tune.map(({ method, ...others }) => [`how.${method}`, json(others)] as const);
   return { how: tune.map(({ method }) => method).join(" "), ...Object.fromEntries(options) };
 }
 
-/** Null: a record, Ku and Pu alone, or a plant without fields; their link is that of a job. */
+/** The link has one controller, that of the designs, in whose settings today's are read. */
+function holdsToday(baseline: TuningRequest["baseline"], implement: TuningRequest["implement"]): boolean {
+  if (!baseline || baseline === "from-record" || baseline.product === undefined) return true;
+  const { settings: _settings, ...typedInto } = baseline;
+  return Object.entries(typedInto).every(([name, value]) => exactly(value) === exactly((implement as Record<string, unknown> | undefined)?.[name]));
+}
+
+const exactly = (value: unknown): string => JSON.stringify(value ?? null);
+
+/** Several named methods, but not a comparison of all or none. */
+const holdsMethods = (tune: TuningRequest["tune"]): boolean => tune === undefined || (Array.isArray(tune) && tune.length > 0 && !asksForAll(tune));
+
+/** Null: a record, Ku and Pu alone, a plant without fields, or what the link cannot hold; their link is that of a job. */
 export function linkOf(request: TuningRequest): Extract<Route, { screen: "new" }> | null {
   const { name, units, plant, record, identify: _identify, ultimate, tune, baseline, implement, ...others } = request;
-  const described = plant && !record && !ultimate ? plantTexts(plant) : null;
+  const held = plant && !record && !ultimate && holdsMethods(tune) && holdsToday(baseline, implement);
+  const described = held ? plantTexts(plant) : null;
   if (!described) return null;
   const { product = "", y_span, u_span, sample_time, ...built } = implement ?? {};
   const values: Record<string, string> = {

@@ -314,6 +314,7 @@ export function startView(store: Store, events: StartEvents): StartView {
 
   async function tuneRecord(all: boolean): Promise<void> {
     turnTo("record");
+    await today.settled();
     const reading = record.read();
     const { request, faults } = compose({ record: reading.record, identify: reading.identify }, all);
     await send(request, [...reading.errors, ...faults], all);

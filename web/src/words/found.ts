@@ -13,11 +13,11 @@ function typedWords({ typing }: ControllerInRecord, product: Product | null): st
   return written.length > 0 ? written.join(", ") : null;
 }
 
-/** "Kp 0.800 ± 0.010, Ti 150.0 ± 2.0 s": in the ideal form. A part that is zero within its error is left out. */
+/** "Kp 0.800 ± 0.010, Ti 150.0 ± 2.0 s": in the ideal form, the parts that the service found. */
 function idealWords({ controller, standard_errors }: IdentifiedController, time: string): string {
   const written = (["Kp", "Ti", "Td"] as const).flatMap((name) => {
     const value = (controller as Partial<Record<string, unknown>>)[name];
-    if (typeof value !== "number" || Math.abs(value) <= 2 * (standard_errors[name] ?? 0)) return [];
+    if (typeof value !== "number" || value === 0) return [];
     const unit = name !== "Kp" && time ? ` ${time}` : "";
     return [`${name} ${formatUncertain(value, standard_errors[name])}${unit}`];
   });

@@ -39,7 +39,7 @@ Expected<RecordedController> recorded_controller(const Record& record, const dev
     if (!found) return found.error();
     RecordedController out{.found = std::move(*found), .settings = {}, .settings_errors = {}, .not_representable = {}};
     if (product == nullptr) return out;
-    IdealPid pid = out.found.pid;
+    IdealPid& pid = out.found.pid;
     if (!out.found.b_known) pid.b = product->weights.b, pid.c = product->weights.c;
     auto converted = product::to_settings(*product, pid, device->context, true);
     if (!converted) {

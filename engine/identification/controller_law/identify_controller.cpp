@@ -232,8 +232,12 @@ public:
             // The set point of the same row is integrated: of the sample before by the other rules.
             const double later = (1 - side_) * timing_.centre * s_.period;
             const double b = (fit_.value[kLawSetPoint] + later * now_.Ki) / now_.Kp;
-            const double error = out.standard_errors["b"] = ratio_error(kLawSetPoint, kLawP, b);
-            out.pid.b = usual_weight(b, error);
+            const double error = ratio_error(kLawSetPoint, kLawP, b);
+            out.b_known = distinguishes_weights(error);
+            if (out.b_known) {
+                out.standard_errors["b"] = error;
+                out.pid.b = usual_weight(b, error);
+            }
         }
         if (law_.has(kLawSetPointD)) {
             const double c = fit_.value[kLawSetPointD] / fit_.value[kLawD];
@@ -268,11 +272,13 @@ private:
         return std::sqrt(std::max(0.0, square) / std::pow(fit_.value[gain], 2) + kLimits.min_error * kLimits.min_error);
     }
 
-    /// 0 or 1, the usual weights, if the record does not show another.
+    /// False: 0 and 1 may both be meant.
+    static bool distinguishes_weights(double error) { return kZeroDeviations * error < 0.5; }
+
+    /// The nearer of 0 and 1, the usual weights, if the record does not show another.
     static double usual_weight(double weight, double error) {
-        for (const double usual : {0.0, 1.0})
-            if (!(std::abs(weight - usual) > kZeroDeviations * error)) return usual;
-        return weight;
+        const double usual = weight < 0.5 ? 0 : 1;
+        return std::abs(weight - usual) <= kZeroDeviations * error ? usual : weight;
     }
 
     void find_errors() {

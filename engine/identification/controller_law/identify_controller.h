@@ -33,7 +33,7 @@ struct IdentifiedController {
     bool certain = false;
     std::optional<double> sample_time;  ///< given, or shown by a staircase of u or by rows that the law fits exactly
     double delay = 0;                   ///< time from a row's y to the row of the u that answers it
-    bool b_known = false;               ///< the set point is recorded and moves in automatic; else b is 1
+    bool b_known = false;               ///< the set point moves in automatic enough to tell b 0 from b 1; else b is 1
     double explained = 0;               ///< share of the moves of u, made white, that the law explains, 0 to 1
     int rows = 0;                       ///< used
     int manual_rows = 0, limited_rows = 0, odd_rows = 0;  ///< left out: manual, at ends of u, off the law

@@ -64,7 +64,7 @@ void write_best(const TuningEntry& best, Writer& out) {
     out.key("method").text(best.method);
     write_settings(best, out);
     write_figures(best, out);
-    if (best.evaluation->region) write_figure("worst_Ms", best.evaluation->region->worst_Ms, out);
+    if (best.standing && (best.evaluation->region || best.on_device)) write_figure("worst_Ms", best.standing->Ms, out);
     if (best.optimum_at_Ms) write_figure("excess_percent", best.optimum_at_Ms->excess_percent, out);
 }
 

@@ -333,14 +333,21 @@ Answer controller_record_call(std::string_view body, const RunControl&) {
     const auto& request = std::get<ControllerRecordRequest>(decoded);
     auto today =
         recorded_controller(request.read.record, request.device ? &*request.device : nullptr, request.sample_time);
-    if (!today) return refusal(to_problem(today.error()));
-    ControllerRecordAnswer answer{.found = std::move(today->found), .typing = {}, .not_typed = {}};
-    if (auto warning = mode_warning(request.read)) answer.found.warnings.push_back(*std::move(warning));
-    if (today->settings)
-        answer.typing.emplace(SettingsAnswer{
-            request.device->product, today->settings->settings, today->settings->settings, today->settings->realised,
-            std::move(today->settings->notes), request.device->context, std::move(today->settings_errors)});
-    if (!today->not_representable.empty()) answer.not_typed = std::move(today->not_representable);
+    ControllerRecordAnswer answer;
+    if (today) {
+        if (auto warning = mode_warning(request.read)) today->found.warnings.push_back(*std::move(warning));
+        answer.found = std::move(today->found);
+        if (today->settings)
+            answer.typing.emplace(SettingsAnswer{request.device->product, today->settings->settings,
+                                                 today->settings->settings, today->settings->realised,
+                                                 std::move(today->settings->notes), request.device->context,
+                                                 std::move(today->settings_errors)});
+        if (!today->not_representable.empty()) answer.not_typed = std::move(today->not_representable);
+    } else {
+        // A record that does not show the settings is no fault of the request.
+        if (today.error().kind != ErrorKind::not_identifiable) return refusal(to_problem(today.error()));
+        answer.not_identified = std::move(today.error().message);
+    }
     Writer out;
     controller_record_answer_contract().write(answer, out);
     return {200, out.take()};

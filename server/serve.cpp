@@ -185,7 +185,7 @@ private:
     NotifierSettings notifier_settings() {
         NotifierSettings made;
         made.now = [this] { return now(); };
-        made.job_text = job_told_json;
+        made.job_text = notification_job_json;
         made.batch_text = batch_json;
         made.count = [this](DeliveryOutcome outcome) { metrics_.count(outcome); };
         made.version = TUNEWRIGHT_VERSION;

@@ -64,9 +64,9 @@ std::optional<Problem> JobsArray::feed(std::string_view bytes, std::vector<RawEn
 // Keeps bytes inside a request that do not affect its structure in one piece. Returns their number.
 std::size_t JobsArray::inside(std::string_view bytes) {
     if ((at_ != At::structure && at_ != At::quoted) || escaped_) return 0;
-    const std::string_view telling = at_ == At::quoted ? "\"\\\n" : "{}[]\"\n";
+    const std::string_view structural = at_ == At::quoted ? "\"\\\n" : "{}[]\"\n";
     std::size_t run = 0;
-    while (run < bytes.size() && telling.find(bytes[run]) == std::string_view::npos) ++run;
+    while (run < bytes.size() && structural.find(bytes[run]) == std::string_view::npos) ++run;
     keep(bytes.substr(0, run));
     column_ += static_cast<long>(run);
     return run;

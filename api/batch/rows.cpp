@@ -1,10 +1,12 @@
 #include "api/batch/rows.h"
 
+#include <rapidjson/document.h>
+
+#include <algorithm>
 #include <array>
 
 #include "api/contract/record.h"
 #include "api/csv/csv_writer.h"
-#include "api/json/json.h"
 #include "api/json/writer.h"
 #include "engine/number_text.h"
 #include "engine/request/entry.h"
@@ -36,14 +38,32 @@ constexpr std::array kFigures = {
     Column{"settling_time", "/performance/setpoint/settling_time"},
 };
 
-const Json* at(const Json& value, const char* pointer) {
-    const Json::json_pointer place(pointer);
-    return value.contains(place) ? &value.at(place) : nullptr;
+/// A stored text as a tree. A batch has hundreds of megabytes of results, of which a line of CSV needs a few numbers.
+using Value = rapidjson::Value;
+
+std::string_view text_of(const Value& value) { return {value.GetString(), value.GetStringLength()}; }
+
+const Value* member(const Value& value, std::string_view name) {
+    if (!value.IsObject()) return nullptr;
+    const auto found =
+        value.FindMember(Value(rapidjson::StringRef(name.data(), static_cast<rapidjson::SizeType>(name.size()))));
+    return found != value.MemberEnd() ? &found->value : nullptr;
 }
 
-void add_text(const Json& value, const char* pointer, CsvWriter& out) {
-    const Json* found = at(value, pointer);
-    found != nullptr && found->is_string() ? out.text(found->get_ref<const std::string&>()) : out.empty();
+/// `pointer` as of RFC 6901, without escapes; null if there is no such value.
+const Value* at(const Value& value, std::string_view pointer) {
+    const Value* here = &value;
+    while (here != nullptr && !pointer.empty()) {
+        const std::size_t end = std::min(pointer.find('/', 1), pointer.size());
+        here = member(*here, pointer.substr(1, end - 1));
+        pointer.remove_prefix(end);
+    }
+    return here;
+}
+
+void add_text(const Value& value, std::string_view pointer, CsvWriter& out) {
+    const Value* found = at(value, pointer);
+    found != nullptr && found->IsString() ? out.text(std::string(text_of(*found))) : out.empty();
 }
 
 /// Columns that were added later stand at the end, so that the earlier ones keep their positions.
@@ -52,86 +72,81 @@ constexpr std::array kLater = {
     "worst_Ms",  "today_settings", "today_Ms",          "u_unit",           "y_unit"};
 
 /// The settings for the user's own controller as text, "GAIN 2.328 %/%; RESET 93.12 s"; "" without a product.
-std::string to_type(const Json& entry) {
-    const Json* texts = at(entry, "/as_entered/as_typed");
-    const Json* units = at(entry, "/as_entered/units");
+std::string to_type(const Value& entry) {
+    const Value* texts = at(entry, "/as_entered/as_typed");
+    const Value* units = at(entry, "/as_entered/units");
     std::string out;
     if (texts == nullptr) return out;
-    for (const auto& [name, text] : texts->items()) {
-        out += (out.empty() ? "" : "; ") + name + " " + text.get<std::string>();
-        if (units != nullptr && units->contains(name)) out += " " + units->at(name).get<std::string>();
+    for (const auto& [name, text] : texts->GetObject()) {
+        if (!out.empty()) out += "; ";
+        out.append(text_of(name)).append(" ").append(text_of(text));
+        if (const Value* unit = units == nullptr ? nullptr : member(*units, text_of(name)))
+            out.append(" ").append(text_of(*unit));
     }
     return out;
 }
 
 /// The load IAE of the loop, which verdicts compare: as implemented if that is known.
-const Json* load_of(const Json& entry) {
-    return at(entry, entry.contains("implemented") ? "/implemented/performance/load/IAE" : "/performance/load/IAE");
+const Value* load_of(const Value& entry) {
+    return at(entry, member(entry, "implemented") != nullptr ? "/implemented/performance/load/IAE" : "/performance/load/IAE");
 }
 
 /// The same, or the controller with the unit of time: "Kp 0.9; Ti 12 min".
-std::string settings_text(const Json& result, const Json& entry) {
+std::string settings_text(const Value& result, const Value& entry) {
     std::string out = to_type(entry);
-    const Json* controller = at(entry, "/controller");
+    const Value* controller = at(entry, "/controller");
     if (!out.empty() || controller == nullptr) return out;
-    const Json* unit = at(result, "/units/time");
-    const std::string time =
-        unit != nullptr && unit->is_string() ? unit->get<std::string>() : Units{}.time_or_default();
+    const Value* unit = at(result, "/units/time");
+    const std::string time = unit != nullptr && unit->IsString() ? std::string(text_of(*unit)) : Units{}.time_or_default();
     for (const char* name : {"Kp", "Ki", "Kd", "Ti", "Td"}) {
-        const Json* value = at(*controller, (std::string("/") + name).c_str());
-        if (value == nullptr || !value->is_number()) continue;
-        out += (out.empty() ? "" : "; ") + std::string(name) + " " + tunewright::text(value->get<double>(), 6);
+        const Value* value = member(*controller, name);
+        if (value == nullptr || !value->IsNumber()) continue;
+        out += (out.empty() ? "" : "; ") + std::string(name) + " " + tunewright::text(value->GetDouble(), 6);
         if (*name == 'T') out += " " + time;
     }
     return out;
 }
 
+bool is_todays(const Value& entry) {
+    const Value* method = member(entry, "method");
+    return method != nullptr && method->IsString() && text_of(*method) == kBaselineMethod;
+}
+
 /// The entry of today's settings; null if the result has none.
-const Json* todays_entry(const Json& result) {
-    const Json* entries = at(result, "/controllers");
+const Value* todays_entry(const Value& result) {
+    const Value* entries = at(result, "/controllers");
     if (entries == nullptr) return nullptr;
-    for (const Json& entry : *entries)
-        if (entry.value("method", "") == kBaselineMethod) return &entry;
+    for (const Value& entry : entries->GetArray())
+        if (is_todays(entry)) return &entry;
     return nullptr;
 }
 
-/// Ms of the loop: as implemented if that is known.
-const Json* Ms_of(const Json& entry) {
-    return at(entry, entry.contains("implemented") ? "/implemented/robustness/Ms" : "/robustness/Ms");
+/// The largest Ms on any plant that the loop may meet, as the ranking judges it.
+const Value* worst_Ms_of(const Value& entry) { return at(entry, "/standing/Ms"); }
+
+void add_number(const Value* value, CsvWriter& out) {
+    value != nullptr && value->IsNumber() ? out.number(value->GetDouble()) : out.empty();
 }
 
-/// The largest Ms on any plant that the loop may meet.
-const Json* worst_Ms_of(const Json& entry) {
-    const Json *worst = at(entry, "/region/worst_Ms"), *own = Ms_of(entry);
-    if (worst == nullptr || own == nullptr || !worst->is_number() || !own->is_number()) return worst ? worst : own;
-    return worst->get<double>() > own->get<double>() ? worst : own;
-}
-
-void add_number(const Json* value, CsvWriter& out) {
-    value != nullptr && value->is_number() ? out.number(value->get<double>()) : out.empty();
-}
-
-void add_time_unit(const Json& result, CsvWriter& out) {
-    const Json* unit = at(result, "/units/time");
-    if (result.is_object() && unit == nullptr)
+void add_time_unit(const Value& result, CsvWriter& out) {
+    if (result.IsObject() && at(result, "/units/time") == nullptr)
         out.text(Units{}.time_or_default());
     else
         add_text(result, "/units/time", out);
 }
 
-void add_later(const Json& result, const Json& entry, CsvWriter& out) {
+void add_later(const Value& result, const Value& entry, CsvWriter& out) {
     add_time_unit(result, out);
     add_text(entry, "/controller/filter/type", out);
     add_number(at(entry, "/controller/setpoint_filter/T"), out);
     const std::string typed = to_type(entry);
     typed.empty() ? out.empty() : out.text(typed);
-    const Json* todays = todays_entry(result);
-    const Json *today = todays == nullptr ? nullptr : load_of(*todays), *load = load_of(entry);
-    const bool known = today != nullptr && today->is_number();
-    known ? out.number(today->get<double>()) : out.empty();
-    const bool compared = known && load != nullptr && load->is_number() && today->get<double>() > 0 &&
-                          entry.value("method", "") != kBaselineMethod;
-    compared ? out.number(100 * (1 - load->get<double>() / today->get<double>())) : out.empty();
+    const Value* todays = todays_entry(result);
+    const Value *today = todays == nullptr ? nullptr : load_of(*todays), *load = load_of(entry);
+    const bool known = today != nullptr && today->IsNumber();
+    known ? out.number(today->GetDouble()) : out.empty();
+    const bool compared = known && load != nullptr && load->IsNumber() && today->GetDouble() > 0 && !is_todays(entry);
+    compared ? out.number(100 * (1 - load->GetDouble() / today->GetDouble())) : out.empty();
     add_number(worst_Ms_of(entry), out);
     const std::string before = todays == nullptr ? "" : settings_text(result, *todays);
     before.empty() ? out.empty() : out.text(before);
@@ -141,13 +156,13 @@ void add_later(const Json& result, const Json& entry, CsvWriter& out) {
 }
 
 /// `entry` of a result; an empty object if there is none.
-void add_line(const ResultRow& row, const Json& result, const Json& entry, const Json& error, CsvWriter& out) {
+void add_line(const ResultRow& row, const Value& result, const Value& entry, const Value& error, CsvWriter& out) {
     out.integer(row.index).text(row.id).text(row.name).text(row.status);
     add_text(entry, "/method", out);
     add_text(entry, "/controller/form", out);
     for (const Column& column : kFigures) add_number(at(entry, column.pointer), out);
-    const Json* warnings = at(entry, "/warnings");
-    warnings != nullptr ? out.integer(static_cast<long long>(warnings->size())) : out.empty();
+    const Value* warnings = at(entry, "/warnings");
+    warnings != nullptr && warnings->IsArray() ? out.integer(warnings->Size()) : out.empty();
     add_text(error, "/detail", out);
     add_later(result, entry, out);
     out.end_line();
@@ -190,15 +205,22 @@ std::string csv_headings() {
 }
 
 void append_csv(const ResultRow& row, std::string& out) {
-    const Json result = row.result.empty() ? Json() : Json::parse(row.result, nullptr, false);
-    const Json error = row.error.empty() ? Json() : Json::parse(row.error, nullptr, false);
+    rapidjson::Document result, error;
+    const auto read = [](rapidjson::Document& tree, std::string_view text) {
+        if (!text.empty()) tree.Parse<rapidjson::kParseFullPrecisionFlag>(text.data(), text.size());
+        if (tree.HasParseError()) tree.SetNull();
+    };
+    read(result, row.result);
+    read(error, row.error);
     CsvWriter lines;
-    const Json* entries = at(result, "/controllers");
-    if (entries == nullptr || entries->empty()) {
-        add_line(row, result, Json::object(), error, lines);
+    const Value* entries = at(result, "/controllers");
+    if (entries == nullptr || !entries->IsArray() || entries->Empty()) {
+        add_line(row, result, Value(rapidjson::kObjectType), error, lines);
     } else {
-        for (const Json& entry : *entries)
-            add_line(row, result, entry, entry.contains("error") ? entry["error"] : error, lines);
+        for (const Value& entry : entries->GetArray()) {
+            const Value* own = member(entry, "error");
+            add_line(row, result, entry, own != nullptr ? *own : error, lines);
+        }
     }
     out += lines.take();
 }

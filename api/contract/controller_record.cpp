@@ -87,8 +87,9 @@ const Description<ControllerRecordAnswer>& controller_record_answer_contract() {
     static const auto description = [] {
         using A = ControllerRecordAnswer;
         Description<A> d("ControllerRecordAnswer", "Today's settings of the loop.");
-        d.field("identified", &A::found, answer(identified_controller_contract()), "From the record.",
-                {.required = true})
+        d.field("identified", &A::found, maybe(answer(identified_controller_contract())), "From the record.")
+            .field("not_identified", &A::not_identified, maybe(words()),
+                   "Instead of identified: the reason why the record does not show the settings.")
             .field("typing", &A::typing, maybe(answer(settings_answer_contract())),
                    "The same as settings of the product of implement.")
             .field("not_typed", &A::not_typed, maybe(words()),

@@ -24,9 +24,10 @@ struct ControllerRecordRequest {
 const Description<ControllerRecordRequest>& controller_record_request_contract();
 
 struct ControllerRecordAnswer {
-    IdentifiedController found;
-    std::optional<SettingsAnswer> typing;  ///< in the product of the request
-    std::optional<std::string> not_typed;  ///< the reason why its product cannot have these settings
+    std::optional<IdentifiedController> found;
+    std::optional<std::string> not_identified;  ///< the reason why the record does not show the settings
+    std::optional<SettingsAnswer> typing;       ///< in the product of the request
+    std::optional<std::string> not_typed;       ///< the reason why its product cannot have these settings
 };
 const Description<ControllerRecordAnswer>& controller_record_answer_contract();
 

@@ -172,7 +172,7 @@ void take_time_behind(std::string_view rest, std::vector<Pair>& out) {
 }
 
 /// Writes words for a printer's letters "T", "T0", "B@", "@", "@0" and for their set points.
-void tell_printer_words(std::vector<Pair>& out) {
+void name_printer_letters(std::vector<Pair>& out) {
     const auto target = [&](const std::string& key) {
         return std::any_of(out.begin(), out.end(), [&](const Pair& pair) { return pair.key == key + ".target"; });
     };
@@ -227,7 +227,7 @@ void split_pairs(std::string_view line, std::vector<Pair>& out) {
         at = consumed;
     }
     take_time_behind(line.substr(consumed), out);
-    tell_printer_words(out);
+    name_printer_letters(out);
 }
 
 bool is_pair_line(const std::vector<Pair>& pairs, const std::vector<std::string>& keys) {

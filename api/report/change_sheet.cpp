@@ -86,7 +86,7 @@ std::string ChangeSheets::page(const std::string& batch, const std::string& next
     Html body;
     if (!next.empty())
         body += element("p",
-                        Html("These are the first ") + std::to_string(loops_) + " loops of this part. " +
+                        Html("This part has ") + std::to_string(loops_) + " loops. " +
                             element("a", "The next part", {{"href", next}}) + " has the others.",
                         {{"class", "screen"}});
     body += sheets_;

@@ -18,7 +18,8 @@ Html reason_section(const ReportInput& subject);
 /// The title of a product, "Emerson DeltaV PID, FORM Series"; a maker whose name is part of the product's is not
 /// repeated.
 std::string product_title(const product::Product& product);
-/// The user's own controller in words, as the request names it; "" if it names none.
+/// The controller into which the new settings are typed; "" if it is not known. Settings that the product of the
+/// request cannot take are not its own.
 std::string controller_words(const ReportInput& subject);
 /// `if_known`: the column of today's settings is shown only if they are known. `always`: otherwise it is empty, to be
 /// written into.

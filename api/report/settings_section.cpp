@@ -76,9 +76,11 @@ Html forms_table(const char* caption, const std::vector<Column>& columns, const 
     return table(caption, top, rows);
 }
 
+bool is_nonlinear(const ReportInput& s) { return text_at(s.entry.at("controller").at("form")) == "npid"; }
+
 const char* own_form(const ReportInput& s) {
-    const std::string form = text_at(s.entry.at("controller").at("form"));
-    return form == "npid" ? "Nonlinear (NPID)" : form == "parallel" ? "Parallel, as given" : "Ideal";
+    if (is_nonlinear(s)) return "Nonlinear (NPID)";
+    return text_at(s.entry.at("controller").at("form")) == "parallel" ? "Parallel, as given" : "Ideal";
 }
 
 /// The product of the new settings: settings that were typed into one stay in it. A result of an older version names
@@ -135,12 +137,11 @@ Html change_table(const product::Product& product, const ReportInput& s, TodayCo
 
 /// Today's settings next to the new ones in the ideal form, or in that of a nonlinear controller.
 Html ideal_table(const ReportInput& s, TodayColumn column) {
-    const bool nonlinear = text_at(s.entry.at("controller").at("form")) == "npid";
     const bool with_today = s.today || column == TodayColumn::always;
     std::vector<Column> columns;
     if (with_today) columns.push_back({"Today", s.today ? s.today->at("controller") : s.result.at("")});
     columns.push_back({with_today ? "New" : own_form(s), s.entry.at("controller")});
-    return forms_table(nonlinear ? "To enter" : "To enter, in the ideal form", columns, s);
+    return forms_table(is_nonlinear(s) ? "To enter, in the nonlinear form" : "To enter, in the ideal form", columns, s);
 }
 
 Html from_to(const JsonLocation& low, const JsonLocation& high) {
@@ -186,8 +187,8 @@ std::string product_title(const product::Product& product) {
 }
 
 std::string controller_words(const ReportInput& s) {
-    const product::Product* product = product_of(s);
-    return product == nullptr ? "" : product_title(*product);
+    if (has_typed(s)) return product_title(*product_of(s));
+    return is_nonlinear(s) ? "a nonlinear PID controller" : "";
 }
 
 Html settings_section(const ReportInput& s, TodayColumn column) {

@@ -84,12 +84,12 @@ Html parameters_of(const JsonLocation& model, const ReportInput& s) {
         if (!value.is_number()) continue;
         const bool time = name[0] == 'T' || name == "L";
         const JsonLocation error = model.at("standard_errors").at(name);
-        const bool told = error.exists() && !negligible(error.value().get<double>(), value.get<double>());
+        const bool known = error.exists() && !negligible(error.value().get<double>(), value.get<double>());
         rows.push_back({with_unit(name, time          ? s.time
                                         : name == "K" ? unit_quotient(s.y, s.u)
                                                       : ""),
                         figure(model.at("plant").at(name)),
-                        told             ? "± " + figure(error, 2)
+                        known            ? "± " + figure(error, 2)
                         : error.exists() ? Html("negligible")
                                          : Html("")});
     }

@@ -2,7 +2,7 @@
 //
 //   peers_engine plants              name, num, den (descending powers, between spaces), dead time
 //   peers_engine design SEARCH [pi]  name, Kp, Ti, Td, ms: the method `robust`, the shorter of two runs
-//   peers_engine price < answers     name, load IAE to infinity of the Kp, Ti, Td after the name; nan where unstable
+//   peers_engine IAE < answers       name, load IAE to infinity of the Kp, Ti, Td after the name; nan where unstable
 
 #include <algorithm>
 #include <chrono>
@@ -86,7 +86,7 @@ double load_iae(const Plant& plant, const IdealPid& pid) {
     return evaluation ? evaluation->performance.load.IAE.value_or(NAN) : NAN;
 }
 
-void cost_of_answers() {
+void print_load_iae() {
     std::map<std::string, Plant> plants;
     for (auto& [name, plant] : amigo_batch()) plants.emplace(name, std::move(plant));
     for (std::string line; std::getline(std::cin, line);) {
@@ -112,9 +112,9 @@ int main(int argc, char** argv) {
         print_plants();
     else if (command == "design" && argc > 2)
         print_designs(argv[2], argc > 3 && std::string(argv[3]) == "pi");
-    else if (command == "price")
-        cost_of_answers();
+    else if (command == "IAE")
+        print_load_iae();
     else
-        return std::fprintf(stderr, "peers_engine plants | design SEARCH [pi] | price\n"), 2;
+        return std::fprintf(stderr, "peers_engine plants | design SEARCH [pi] | IAE\n"), 2;
     return 0;
 }

@@ -59,6 +59,12 @@ void verify_integral(Verification& v, const StepResponse& load, const std::optio
     if (linear) v.ie_identity = std::abs(load.nodes.back().error_integral / exact - 1);
 }
 
+/// The threshold of the nonlinear integral; empty: the controller is linear.
+std::optional<double> delta_r_of(const Controller& controller) {
+    const auto* npid = std::get_if<Npid>(&controller);
+    return npid != nullptr ? npid->delta_r : std::nullopt;
+}
+
 MeasuredResponse respond(const LinearPlant& plant, const Loop& loop, std::optional<double> delta_r,
                          const StepInputs& inputs, const EvaluateOptions& o) {
     ResponseOptions options;
@@ -91,8 +97,7 @@ void warn_of_limits(Evaluation& evaluation, const StepResponse& response, const 
 
 /// Adds the time-domain figures to the evaluation of a stable loop.
 void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loop& loop, const EvaluateOptions& o) {
-    const auto* npid = std::get_if<Npid>(&evaluation.controller);
-    const auto delta_r = npid != nullptr ? npid->delta_r : std::nullopt;
+    const auto delta_r = delta_r_of(evaluation.controller);
     MeasuredResponse of_setpoint = respond(plant, loop, delta_r, {o.setpoint_step, 0}, o),
                      of_load = respond(plant, loop, delta_r, {0, o.load_step}, o);
     const StepResponse &setpoint = of_setpoint.response, &load = of_load.response;
@@ -106,7 +111,7 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
     evaluation.verification.iae_step_halving = of_load.errors.IAE;
     if (to_infinity && !o.actuator)
         verify_integral(evaluation.verification, load, evaluation.performance.load.IAE, !delta_r);
-    if (!as_promised(of_setpoint) || !as_promised(of_load))
+    if (!is_accurate(of_setpoint) || !is_accurate(of_load))
         evaluation.warnings.push_back(
             {"coarse-figures",
              "Halving the time steps still changes an index by more than its promised accuracy, or could not be tried; "
@@ -172,6 +177,13 @@ Expected<Evaluation> evaluate_linear(const AnalysedLinear& subject, const Contro
     if (auto error = stopped(options)) return *error;
     if (!subject.family.single()) add_region(evaluation, subject.family);
     return evaluation;
+}
+
+Figure load_IAE(const LinearPlant& plant, const Controller& controller, const EvaluateOptions& options) {
+    const auto loop = Loop::make(plant, gains(controller));
+    if (!loop) return no_figure(loop.error().message);
+    const MeasuredResponse load = respond(plant, *loop, delta_r_of(controller), {0, options.load_step}, options);
+    return load_figures(load.response, !options.horizon, load.indices).IAE;
 }
 
 namespace {

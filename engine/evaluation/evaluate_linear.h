@@ -16,6 +16,9 @@ namespace tunewright {
 Expected<Evaluation> evaluate_linear(const AnalysedLinear& subject, const Controller& controller,
                                      const EvaluateOptions& options);
 
+/// The load IAE of evaluate_linear() alone, for a loop that is known to be stable.
+Figure load_IAE(const LinearPlant& plant, const Controller& controller, const EvaluateOptions& options);
+
 /// As evaluate(): every time-domain figure is empty.
 Expected<Evaluation> evaluate_measured(const MeasuredPlant& plant, const Controller& controller,
                                        const EvaluateOptions& options);

@@ -12,25 +12,25 @@
 #include "engine/simulation/sampled/sampled_response.h"
 
 namespace tunewright {
+
+bool comes_to_rest(const ProgramLimits& limits) {
+    return limits.u_resolution == 0 && limits.y_resolution == 0 && limits.dead_band == 0;
+}
+
 namespace {
 
 using Simulate = std::function<StepResponse(const ProgramLimits&, const StepInputs&, std::optional<double> horizon)>;
 
-/// True if the loop comes to rest: resolutions and dead bands keep it moving.
-bool rests(const ProgramLimits& limits) {
-    return limits.u_resolution == 0 && limits.y_resolution == 0 && limits.dead_band == 0;
-}
-
 KnownResponse run_of(StepResponse response, const ProgramLimits& limits) {
     KnownResponse run = KnownResponse::of(std::move(response));
-    if (!rests(limits)) run.known_to = run.response.nodes.back().t;
+    if (!comes_to_rest(limits)) run.known_to = run.response.nodes.back().t;
     return run;
 }
 
 StepResponse respond(const Simulate& simulate, const ProgramLimits& limits, const StepInputs& inputs,
                      const EvaluateOptions& options) {
     std::optional<double> horizon = options.horizon;
-    if (rests(limits) || horizon) return simulate(limits, inputs, horizon);
+    if (comes_to_rest(limits) || horizon) return simulate(limits, inputs, horizon);
     const StepResponse without = simulate({limits.output, 0, 0, 0}, inputs, horizon);
     return simulate(limits, inputs, without.nodes.back().t);
 }
@@ -39,7 +39,7 @@ void add_performance(DeviceLoop& on_device, const Simulate& simulate, const Prog
                      const EvaluateOptions& options) {
     StepResponse setpoint = respond(simulate, limits, {options.setpoint_step, 0}, options),
                  load = respond(simulate, limits, {0, options.load_step}, options);
-    const bool to_infinity = !options.horizon && rests(limits);
+    const bool to_infinity = !options.horizon && comes_to_rest(limits);
     on_device.performance.setpoint = setpoint_figures(setpoint, options.setpoint_step, to_infinity);
     on_device.performance.load = load_figures(load, to_infinity);
     on_device.responses = drawn(run_of(std::move(setpoint), limits), run_of(std::move(load), limits), options);

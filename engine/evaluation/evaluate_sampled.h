@@ -27,4 +27,7 @@ struct DeviceLoop {
 Expected<DeviceLoop> evaluate_sampled(const AnalysedPlant& subject, const SampledPid& law, const ProgramLimits& limits,
                                       const EvaluateOptions& options);
 
+/// False: resolutions or a dead band keep the loop moving, so that a simulation needs an end of its own.
+bool comes_to_rest(const ProgramLimits& limits);
+
 }  // namespace tunewright

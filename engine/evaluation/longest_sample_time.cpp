@@ -35,7 +35,7 @@ constexpr double kMaxContinuousSwing = 0.2;      // rad of the fastest oscillati
 constexpr double kMaxContinuousTimeRatio = 0.1;  // multiple of 1/omega_Ms: below both, sampling hardly matters
 constexpr double kMaxSwingStep = 0.15;           // rad of the fastest oscillation between successive sample times
 constexpr double kMaxUnseenExcess = 5e-3;        // relative change of |S| by a mode whose oscillation is not followed
-constexpr int kMaxLooks = 5000;                  // evaluations of the whole loop, one after the other: some seconds
+constexpr int kMaxLoopEvaluations = 5000;        // evaluations of the whole loop, one after the other: some seconds
 constexpr double kMaxRoughLogError = 4e-3;       // error of ln Ms in the quick evaluation
 constexpr double kSmoothingLag = 15;             // sample times: with a longer lag Ms has no edges
 constexpr double kMaxTurn = 1.5;              // rad of omega_Ms in a sample: beyond it a peak nearby is not the loop's
@@ -271,9 +271,9 @@ private:
     Figure by_steps() const {
         double low = low_.value_or(shortest());
         if (!bears(low)) return no_figure(kNone);
-        for (int looks = 0; low <= longest(); ++looks) {
+        for (int evaluations = 0; low <= longest(); ++evaluations) {
             if (stop_.stop_requested()) return no_figure("The search was stopped.");
-            if (looks == kMaxLooks)
+            if (evaluations == kMaxLoopEvaluations)
                 return no_figure(
                     "The plant oscillates much faster than the loop, so not all sample times could be tried: up to " +
                     text(low) + " Ms stays within 5 %.");

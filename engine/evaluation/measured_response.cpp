@@ -30,9 +30,9 @@ IndexErrors moved(const Indices& coarse, const Indices& fine) {
     return errors;
 }
 
-bool within_promise(const IndexErrors& errors) {
-    return errors.IAE.value_or(0) <= kPromisedIae && errors.ISE.value_or(0) <= kPromisedIse &&
-           errors.ITAE.value_or(0) <= kPromisedItae && errors.TV.value_or(0) <= kPromisedTv;
+bool within_max_errors(const IndexErrors& errors) {
+    return errors.IAE.value_or(0) <= kMaxIaeError && errors.ISE.value_or(0) <= kMaxIseError &&
+           errors.ITAE.value_or(0) <= kMaxItaeError && errors.TV.value_or(0) <= kMaxTvError;
 }
 
 /// The same instants and those halfway between.
@@ -64,8 +64,8 @@ StepResponse refined(const Simulate& simulate, ResponseOptions& options, const S
 
 }  // namespace
 
-bool as_promised(const MeasuredResponse& measured) {
-    return !measured.response.settles || (measured.errors.TV && within_promise(measured.errors));
+bool is_accurate(const MeasuredResponse& measured) {
+    return !measured.response.settles || (measured.errors.TV && within_max_errors(measured.errors));
 }
 
 MeasuredResponse measure(const Simulate& simulate, ResponseOptions options, double target) {
@@ -79,7 +79,7 @@ MeasuredResponse measure(const Simulate& simulate, ResponseOptions options, doub
         if (!finer.settles) break;
         const Indices now = indices_of(finer, target, to_infinity);
         measured = {.response = std::move(finer), .errors = moved(*measured.indices, now), .indices = now};
-        if (within_promise(measured.errors)) break;
+        if (within_max_errors(measured.errors)) break;
     }
     return measured;
 }

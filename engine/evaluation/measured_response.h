@@ -1,6 +1,6 @@
-// A response computed with steps so short that its indices have the promised accuracy, and their errors.
+// A response computed with steps so short that its indices have the stated accuracy, and their errors.
 //
-// A run is repeated with every step halved until no index changes by more than its promised error. The interpolation
+// A run is repeated with every step halved until no index changes by more than its largest error. The interpolation
 // within a step and the indices' quadrature are both of order 4, so the finer run's own error is about a fifteenth of
 // the change: the change bounds the error wherever halving the steps at least halves it. The tail beyond a run's end
 // adds at most 1e-6, and no smaller error is claimed. The tests check both for 105 loops of all kinds.
@@ -15,8 +15,8 @@
 
 namespace tunewright {
 
-/// Promised relative errors of the indices of a measured response.
-inline constexpr double kPromisedIae = 1e-5, kPromisedIse = 1e-5, kPromisedItae = 2e-5, kPromisedTv = 5e-5;
+/// Largest relative errors of the indices of a measured response.
+inline constexpr double kMaxIaeError = 1e-5, kMaxIseError = 1e-5, kMaxItaeError = 2e-5, kMaxTvError = 5e-5;
 
 struct MeasuredResponse {
     StepResponse response;
@@ -31,8 +31,8 @@ using Simulate = std::function<StepResponse(const ResponseOptions&)>;
 /// go to infinity.
 MeasuredResponse measure(const Simulate& simulate, ResponseOptions options, double target);
 
-/// True if every error is known and at most the promised one; also true for a response that does not settle, because no
-/// accuracy is promised for its indices.
-bool as_promised(const MeasuredResponse& measured);
+/// True if every error is known and at most the largest allowed; also true for a response that does not settle, because
+/// no accuracy is stated for its indices.
+bool is_accurate(const MeasuredResponse& measured);
 
 }  // namespace tunewright

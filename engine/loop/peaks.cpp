@@ -157,12 +157,12 @@ void give_room(std::vector<Stretch>& stretches) {
 }
 
 /// Evaluates along the interval, step by step and at those local maxima that may exceed the peak so far.
-void look_along(const Stretch& s, double time, const std::function<double(double)>& f, Peak& best) {
+void scan_peak(const Stretch& s, double time, const std::function<double(double)>& f, Peak& best) {
     constexpr double kMaxEvaluations = 1e8;
-    const int looks = static_cast<int>(std::min(std::ceil(time * (s.right - s.left) / s.step), kMaxEvaluations));
-    const double step = (s.right - s.left) / looks;
+    const int evaluations = static_cast<int>(std::min(std::ceil(time * (s.right - s.left) / s.step), kMaxEvaluations));
+    const double step = (s.right - s.left) / evaluations;
     Maximum before{s.left - step, f(s.left - step)}, here{s.left, f(s.left)};
-    for (int k = 0; k <= looks; ++k) {
+    for (int k = 0; k <= evaluations; ++k) {
         const double next = s.left + (k + 1) * step;
         const Maximum after{next, f(next)};
         const bool top = here.value >= before.value && here.value >= after.value;
@@ -189,7 +189,7 @@ void raise_by_turns(const AnyLoop& loop, const LoopGrid& grid, Peaks& peaks) {
         const auto f = [&](double omega) { return value(loop.at(omega)); };
         for (const Stretch* s : higher) {
             if (s->*bound <= best.value) return;
-            look_along(*s, time, f, best);
+            scan_peak(*s, time, f, best);
         }
     };
     raise(peaks.S, &Stretch::S, magnitude_S);

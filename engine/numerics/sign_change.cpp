@@ -58,10 +58,10 @@ double first_positive(const std::function<double(double)>& f, double low, double
         .second;
 }
 
-std::optional<double> first_crossing(const std::function<double(double)>& g, double a, double b, int looks) {
+std::optional<double> first_crossing(const std::function<double(double)>& g, double a, double b, int samples) {
     double low = a;
-    for (int i = 1; i <= looks + 1; ++i) {
-        const double high = i > looks ? b : a + (b - a) * i / (looks + 1);
+    for (int i = 1; i <= samples + 1; ++i) {
+        const double high = i > samples ? b : a + (b - a) * i / (samples + 1);
         const double g_high = g(high);
         if (g_high > 0) return first_positive(g, low, high, g(low), g_high);
         low = high;

@@ -25,7 +25,7 @@ double log_root(const std::function<double(double)>& f, double a, double b, doub
 double first_positive(const std::function<double(double)>& f, double low, double high, double f_low, double f_high);
 
 /// The first s in (a, b] at which g, which is not above 0 at a, rises above it; located to rounding. g is also
-/// evaluated at `looks` points between a and b, to find an excursion that has ended before b.
-std::optional<double> first_crossing(const std::function<double(double)>& g, double a, double b, int looks = 4);
+/// evaluated at `samples` points between a and b, to find an excursion that has ended before b.
+std::optional<double> first_crossing(const std::function<double(double)>& g, double a, double b, int samples = 4);
 
 }  // namespace tunewright

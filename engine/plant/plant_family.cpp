@@ -301,7 +301,7 @@ PlantFamily family_of(const PlantSet& set) {
     return family;
 }
 
-std::vector<Plant> members_beside_nominal(const PlantFamily& family) {
+std::vector<Plant> members_without_nominal(const PlantFamily& family) {
     std::vector<Plant> members;
     for (std::size_t i = 0; i < family.regions.size(); ++i) {
         const PlantRegion& region = family.regions[i];

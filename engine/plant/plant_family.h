@@ -79,6 +79,6 @@ PlantFamily family_of(const Plant& plant);
 PlantFamily family_of(const PlantSet& set);
 
 /// The plants at the ends of every region, without the nominal plant.
-std::vector<Plant> members_beside_nominal(const PlantFamily& family);
+std::vector<Plant> members_without_nominal(const PlantFamily& family);
 
 }  // namespace tunewright

@@ -12,47 +12,48 @@ namespace {
 constexpr double kUnstable = std::numeric_limits<double>::infinity();
 constexpr int kRefinements = 2;  // evaluations at the maximum of a parabola, for the worst point of a quantity
 
-double value_of(const PointEvaluation& look, Quantity quantity) {
-    if (!look.stable) return kUnstable;
-    if (quantity == Quantity::Ms) return look.Ms;
-    if (quantity == Quantity::Mt) return look.Mt;
-    return std::exp(look.log_cost_ratio);
+double value_of(const PointEvaluation& evaluation, Quantity quantity) {
+    if (!evaluation.stable) return kUnstable;
+    if (quantity == Quantity::Ms) return evaluation.Ms;
+    if (quantity == Quantity::Mt) return evaluation.Mt;
+    return std::exp(evaluation.log_cost_ratio);
 }
 
-PointFigures figures(const PointEvaluation& look) {
-    const std::string why = look.stable ? "The response does not settle." : "The loop is not stable here.";
-    PointFigures result{.at = look.at, .Ms = no_figure(why), .Mt = no_figure(why), .relative_IAE = no_figure(why)};
-    if (!look.stable) return result;
-    result.Ms = look.Ms;
-    result.Mt = look.Mt;
-    result.relative_IAE = finite_or(std::exp(look.log_cost_ratio), why);
+PointFigures figures(const PointEvaluation& evaluation) {
+    const std::string why = evaluation.stable ? "The response does not settle." : "The loop is not stable here.";
+    PointFigures result{
+        .at = evaluation.at, .Ms = no_figure(why), .Mt = no_figure(why), .relative_IAE = no_figure(why)};
+    if (!evaluation.stable) return result;
+    result.Ms = evaluation.Ms;
+    result.Mt = evaluation.Mt;
+    result.relative_IAE = finite_or(std::exp(evaluation.log_cost_ratio), why);
     return result;
 }
 
 /// The evaluations along a curve, in ascending order, and the search for the worst point between them.
-class CurveLooks {
+class CurveEvaluations {
 public:
-    CurveLooks(PointDesigns& places, OwnOptima& own, const SettingsInUse& settings)
+    CurveEvaluations(PointDesigns& places, OwnOptima& own, const SettingsInUse& settings)
         : places_(places), own_(own), settings_(settings) {}
 
     std::optional<Error> take(double at) {
-        const auto look = evaluate_between(places_, own_, settings_(at), at, true);
-        if (!look) return look.error();
-        looks_.insert(std::ranges::upper_bound(looks_, at, {}, &PointEvaluation::at), *look);
+        const auto evaluation = evaluate_between(places_, own_, settings_(at), at, true);
+        if (!evaluation) return evaluation.error();
+        evaluations_.insert(std::ranges::upper_bound(evaluations_, at, {}, &PointEvaluation::at), *evaluation);
         return std::nullopt;
     }
 
     std::optional<Error> refine(Quantity quantity) {
         for (int k = 0; k < kRefinements; ++k) {
             const std::size_t i = largest(quantity);
-            if (i == 0 || i + 1 == looks_.size()) return std::nullopt;
-            const auto value = [&](std::size_t j) { return value_of(looks_[j], quantity); };
-            const double x = looks_[i].at, left = (value(i) - value(i - 1)) / (x - looks_[i - 1].at),
-                         right = (value(i + 1) - value(i)) / (looks_[i + 1].at - x),
-                         bend = (right - left) / (looks_[i + 1].at - looks_[i - 1].at);
+            if (i == 0 || i + 1 == evaluations_.size()) return std::nullopt;
+            const auto value = [&](std::size_t j) { return value_of(evaluations_[j], quantity); };
+            const double x = evaluations_[i].at, left = (value(i) - value(i - 1)) / (x - evaluations_[i - 1].at),
+                         right = (value(i + 1) - value(i)) / (evaluations_[i + 1].at - x),
+                         bend = (right - left) / (evaluations_[i + 1].at - evaluations_[i - 1].at);
             if (!std::isfinite(bend) || !(bend < 0)) return std::nullopt;
-            const double top = 0.5 * (x + looks_[i - 1].at) - 0.5 * left / bend;
-            if (!(top > looks_[i - 1].at && top < looks_[i + 1].at) || top == x) return std::nullopt;
+            const double top = 0.5 * (x + evaluations_[i - 1].at) - 0.5 * left / bend;
+            if (!(top > evaluations_[i - 1].at && top < evaluations_[i + 1].at) || top == x) return std::nullopt;
             if (auto error = take(top)) return error;
         }
         return std::nullopt;
@@ -60,18 +61,18 @@ public:
 
     std::size_t largest(Quantity quantity) const {
         std::size_t worst = 0;
-        for (std::size_t i = 1; i < looks_.size(); ++i)
-            if (value_of(looks_[i], quantity) > value_of(looks_[worst], quantity)) worst = i;
+        for (std::size_t i = 1; i < evaluations_.size(); ++i)
+            if (value_of(evaluations_[i], quantity) > value_of(evaluations_[worst], quantity)) worst = i;
         return worst;
     }
 
-    const std::vector<PointEvaluation>& all() const { return looks_; }
+    const std::vector<PointEvaluation>& all() const { return evaluations_; }
 
 private:
     PointDesigns& places_;
     OwnOptima& own_;
     const SettingsInUse& settings_;
-    std::vector<PointEvaluation> looks_;
+    std::vector<PointEvaluation> evaluations_;
 };
 
 /// Evaluates the worst point again, against its own optimum and on a grid that the searches do not use.
@@ -105,14 +106,15 @@ Expected<RangeCurve> curve_over(PointDesigns& places, OwnOptima& own, const Sett
     for (int i = 0; i < count; ++i) wanted.push_back(i + 1 == count ? high : low + (high - low) * i / (count - 1));
     std::ranges::sort(wanted);
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-    CurveLooks looks(places, own, settings);
+    CurveEvaluations evaluations(places, own, settings);
     for (const double at : wanted)
-        if (auto error = looks.take(at)) return *error;
+        if (auto error = evaluations.take(at)) return *error;
     RangeCurve curve;
-    for (const PointEvaluation& look : looks.all()) curve.places.push_back(figures(look));
+    for (const PointEvaluation& evaluation : evaluations.all()) curve.places.push_back(figures(evaluation));
     for (const Quantity quantity : {Quantity::Ms, Quantity::Mt, Quantity::relative_IAE}) {
-        if (auto error = looks.refine(quantity)) return *error;
-        const auto worst = checked(places, settings, looks.all()[looks.largest(quantity)].at, quantity, allowance);
+        if (auto error = evaluations.refine(quantity)) return *error;
+        const auto worst =
+            checked(places, settings, evaluations.all()[evaluations.largest(quantity)].at, quantity, allowance);
         if (!worst) return worst.error();
         curve.worst.push_back(*worst);
     }
@@ -125,9 +127,9 @@ std::optional<Error> add_places(RangeCurve& curve, const PointDesigns& places, c
     for (const double place : at) {
         const auto after = std::ranges::lower_bound(curve.places, place, {}, &PointFigures::at);
         if (after != curve.places.end() && after->at == place) continue;
-        const auto look = evaluate_between(places, own, settings(place), place, true);
-        if (!look) return look.error();
-        curve.places.insert(after, figures(*look));
+        const auto evaluation = evaluate_between(places, own, settings(place), place, true);
+        if (!evaluation) return evaluation.error();
+        curve.places.insert(after, figures(*evaluation));
     }
     return std::nullopt;
 }

@@ -42,14 +42,14 @@ public:
         if (auto error = find_one()) return *error;
         if (auto error = find_schedule()) return *error;
         judge();
-        tell(1, "evaluate", "the range is designed.");
+        report_progress(1, "evaluate", "the range is designed.");
         return std::move(design_);
     }
 
 private:
     bool stopped() const { return control_.stop.stop_requested(); }
 
-    void tell(double fraction, const char* stage, std::string message) const {
+    void report_progress(double fraction, const char* stage, std::string message) const {
         if (!control_.progress) return;
         Progress progress{.fraction = fraction, .stage = stage, .message = std::move(message), .best = {}};
         if (design_.one)
@@ -91,7 +91,7 @@ private:
             design_.why_no_one = one.error().message;
             no_one_ = one.error();
         }
-        tell(0.4, "tune", "one setting for the range.");
+        report_progress(0.4, "tune", "one setting for the range.");
         warn_between();
         return std::nullopt;
     }
@@ -133,7 +133,7 @@ private:
             design_.why_no_schedule = schedule.error().message;
             return std::nullopt;
         }
-        tell(0.9, "schedule", "a schedule of " + std::to_string(schedule->schedule.rows.size()) + " rows.");
+        report_progress(0.9, "schedule", "a schedule of " + std::to_string(schedule->schedule.rows.size()) + " rows.");
         return take(std::move(*schedule));
     }
 

@@ -119,7 +119,7 @@ void warn_of_difference(Evaluation& evaluation, const DeviceEntry& on_device) {
 
 }  // namespace
 
-void take_device_entry(Expected<DeviceEntry> on_device, Evaluation& evaluation, std::optional<DeviceEntry>& beside) {
+void take_device_entry(Expected<DeviceEntry> on_device, Evaluation& evaluation, std::optional<DeviceEntry>& entry) {
     if (!on_device) {
         evaluation.warnings.push_back({"not-as-built", on_device.error().message});
         return;
@@ -129,7 +129,7 @@ void take_device_entry(Expected<DeviceEntry> on_device, Evaluation& evaluation, 
         if (auto degenerate = robust::degenerate_design(*r.omega_Ms, on_device->fitted.controller.Ti,
                                                         on_device->fitted.controller.Td))
             evaluation.warnings.push_back(std::move(*degenerate));
-    beside = std::move(*on_device);
+    entry = std::move(*on_device);
 }
 
 }  // namespace tunewright

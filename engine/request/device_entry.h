@@ -37,6 +37,6 @@ Expected<DeviceEntry> device_entry_of(const AnalysedPlant& subject, const device
 
 /// Adds the device entry to the evaluation, with a warning if the implemented loop differs: unstable, or Ms or the load
 /// IAE changed by more than 2 %. An error of the conversion becomes a warning too: the ideal loop stays in the answer.
-void take_device_entry(Expected<DeviceEntry> on_device, Evaluation& evaluation, std::optional<DeviceEntry>& beside);
+void take_device_entry(Expected<DeviceEntry> on_device, Evaluation& evaluation, std::optional<DeviceEntry>& entry);
 
 }  // namespace tunewright

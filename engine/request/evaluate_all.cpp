@@ -79,13 +79,12 @@ Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std:
     }
     const verdict::Context context{subject, options,     labels,  device ? device->Ts : 0,        model,
                                    nullptr, given_steps, control, own_step ? &*own_step : nullptr};
-    simulate_own_steps(
-        result.controllers, subject, own_step, options.points,
-        [&](const TuningEntry& entry) {
-            const auto& typed = controllers[static_cast<std::size_t>(&entry - result.controllers.data())].typed;
-            return typed ? &typed->device : device ? &*device : nullptr;
-        },
-        control);
+    const auto device_of = [&](const TuningEntry& entry) {
+        const auto& typed = controllers[static_cast<std::size_t>(&entry - result.controllers.data())].typed;
+        return typed ? &typed->device : device ? &*device : nullptr;
+    };
+    if (!simulate_own_steps(result.controllers, subject, own_step, options.points, device_of, control))
+        return out_of_time(result.controllers.size());
     draw_together(result.controllers);
     const RankingTerms terms = ranking_terms(options, subject.linear() != nullptr);
     ranked(result.controllers, terms);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluate_linear.h"
 #include "engine/number_text.h"
 #include "engine/tuning/limits.h"
 #include "engine/tuning/method/rule.h"
@@ -62,11 +63,7 @@ std::optional<double> best_PI_load_IAE(const TuningProblem& problem, const Metho
     of_PI.set(kControllerOption, std::string("PI"));
     const auto tuned = find_method("robust")->tune(problem, of_PI, {control.stop, nullptr, nullptr});
     if (!tuned || tuned->partial) return std::nullopt;
-    EvaluateOptions figures_alone = options;
-    figures_alone.points = 0;
-    figures_alone.noise.reset();
-    const auto evaluation = evaluate(PlantModel(problem.plant), controller_of(*tuned), figures_alone);
-    return evaluation ? evaluation->performance.load.IAE.value : std::nullopt;
+    return load_IAE(problem.linear, controller_of(*tuned), options).value;
 }
 
 }  // namespace tunewright

@@ -287,9 +287,10 @@ Expected<TuningResult> TuningRun::result() {
     }
     if (wants_optima() && !result_.partial) compare_with_optima(tuned);
     replay_record();
-    simulate_own_steps(
-        result_.controllers, *subject_, request_.own_step, request_.evaluate.points,
-        [this](const TuningEntry& entry) { return device_of(entry); }, control_);
+    if (!simulate_own_steps(
+            result_.controllers, *subject_, request_.own_step, request_.evaluate.points,
+            [this](const TuningEntry& entry) { return device_of(entry); }, control_))
+        result_.partial = true;
     draw_together(result_.controllers);
     result_.ranking = ranked(result_.controllers, terms());
     if (result_.model && !result_.ranking.empty())

@@ -109,12 +109,12 @@ struct Metrics::Families {
         counter("tunewright_jobs_interrupted_total", "Jobs found running without a process, and queued again");
     Counter& given_up =
         counter("tunewright_jobs_given_up_total", "Jobs that were interrupted too often and have failed");
-    prometheus::Family<Counter>& told_family =
+    prometheus::Family<Counter>& delivery_family =
         family(BuildCounter(), registry, "tunewright_notify_deliveries_total",
                "Attempts to deliver a notification, by outcome: delivered, failed (with another attempt), given_up");
-    Counter& delivered = told_family.Add({{"outcome", "delivered"}});
-    Counter& failed_deliveries = told_family.Add({{"outcome", "failed"}});
-    Counter& abandoned_deliveries = told_family.Add({{"outcome", "given_up"}});
+    Counter& delivered = delivery_family.Add({{"outcome", "delivered"}});
+    Counter& failed_deliveries = delivery_family.Add({{"outcome", "failed"}});
+    Counter& abandoned_deliveries = delivery_family.Add({{"outcome", "given_up"}});
     prometheus::Family<Histogram>& wait_family =
         family(BuildHistogram(), registry, "tunewright_job_wait_seconds",
                "Time from a job's acceptance to the start of its computation, by class: single, or entry of a batch");

@@ -29,7 +29,7 @@ milliseconds jittered(milliseconds pause, double chance) {
 
 /// The last attempt is made when the time is over.
 std::optional<milliseconds> within_time(const FailedTry& failed, milliseconds pause) {
-    const milliseconds left(failed.end + milliseconds(kTellingTime).count() - failed.now);
+    const milliseconds left(failed.end + milliseconds(kMaxDeliveryTime).count() - failed.now);
     if (left.count() <= 0) return std::nullopt;
     return std::min(pause, left);
 }

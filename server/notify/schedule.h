@@ -19,7 +19,7 @@ struct FailedTry {
 };
 
 /// The time after the end in which delivery is attempted.
-constexpr std::chrono::hours kTellingTime{24};
+constexpr std::chrono::hours kMaxDeliveryTime{24};
 
 /// The pause until the next attempt: 5 s, 5 min, 30 min, 2 h, 5 h, then 10 h each, 10 % more or less, so that attempts
 /// which failed together are not repeated together; longer if the receiver asks for it, up to an hour. The last attempt

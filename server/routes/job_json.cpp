@@ -128,7 +128,7 @@ std::string job_news_json(const JobView& view) {
     return std::move(object).str();
 }
 
-std::string job_told_json(JobRecord job) {
+std::string notification_job_json(JobRecord job) {
     job.request = api::without_members(job.request, {"record"});
     job.result = api::without_members(job.result, {"responses", "frequency", "fit", "y_model"});
     job.error = api::without_members(job.error, {"record"});

@@ -17,7 +17,7 @@ std::string job_json(const JobView& view);
 std::string job_news_json(const JobView& view);
 
 /// A job with request and result but without traces: the content of a notification.
-std::string job_told_json(JobRecord job);
+std::string notification_job_json(JobRecord job);
 
 /// The contract's progress object, also for a job that waits or has just begun; null for one that has ended.
 std::string job_progress_json(const JobView& view);

@@ -101,6 +101,22 @@ TEST(Report, AChangeSheetWithoutTodaysSettingsHasACellToWriteIntoForEach) {
     EXPECT_EQ(count(unknown, kEmpty), count(known, kEmpty) + 2);  // Kp and Ti
 }
 
+TEST(Report, TheHeadOfAChangeSheetNamesTheProductOnlyIfItTakesTheSettings) {
+    const auto sheet = [](const std::string& controller, const std::string& typed) {
+        const std::string result = R"({"controllers": [{"method": "x", "controller": )" + controller + typed + "}]}";
+        return std::get<std::string>(change_sheet_html({result, R"({"implement": {"product": "klipper"}})"}, "0", {}));
+    };
+    const std::string linear = R"({"form": "ideal", "Kp": 2, "Ti": 10})";
+    const std::string nonlinear = R"({"form": "npid", "Kp": 2, "Ti": 10, "delta_r": 5})";
+    const std::string typed = R"(, "as_entered": {"product": "klipper", "as_typed": {"pid_Kp": "2.00"}})";
+    EXPECT_THAT(sheet(linear, typed), HasSubstr("Settings of Klipper heater (control: pid), by: x"));
+    EXPECT_THAT(sheet(nonlinear, ""), HasSubstr("Settings of a nonlinear PID controller, by: x"));
+    EXPECT_THAT(sheet(nonlinear, ""), HasSubstr("To enter, in the nonlinear form"));
+    EXPECT_THAT(sheet(linear, ""), HasSubstr("Controller settings, by: x"));
+    for (const std::string& controller : {linear, nonlinear})
+        EXPECT_THAT(sheet(controller, ""), Not(HasSubstr("Klipper")));
+}
+
 TEST(Report, WhatChangesNothingHasNoChangeSheet) {
     const auto status = [](const std::variant<std::string, Problem>& answer) {
         return std::holds_alternative<Problem>(answer) ? std::get<Problem>(answer).status : 200;

@@ -39,6 +39,18 @@ export function passFocus(from: Element, ...to: (HTMLElement | null)[]): void {
   to.find((element) => element && !element.matches(":disabled") && element.getClientRects().length > 0)?.focus();
 }
 
+/** Updates a part whose elements are made anew: the focus goes to the new element of the same kind and name. */
+export function keepFocus(part: HTMLElement, update: () => void): void {
+  const focused = document.activeElement;
+  if (!(focused instanceof HTMLElement) || focused === part || !part.contains(focused)) return update();
+  const nameOf = (element: Element): string => element.getAttribute("aria-label") ?? element.textContent ?? "";
+  const name = nameOf(focused);
+  const alike = (): HTMLElement[] => [...part.querySelectorAll<HTMLElement>(focused.tagName)].filter((element) => nameOf(element) === name);
+  const at = alike().indexOf(focused);
+  update();
+  if (!focused.isConnected) (alike()[at] ?? alike()[0])?.focus({ preventScroll: true });
+}
+
 /** A menu under a summary element closes when the focus leaves it, or by Escape. */
 export function closesItself(menu: HTMLDetailsElement): HTMLDetailsElement {
   menu.addEventListener("focusout", (event) => {

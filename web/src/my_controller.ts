@@ -36,11 +36,11 @@ type Spans = Pick<Implement, "product" | "y_span" | "u_span" | "sample_time">;
 
 /** The same product with the same spans and sample time. */
 export function sameImplement(a: Spans | null | undefined, b: Spans | null | undefined): boolean {
-  const told = (implement: Spans | null | undefined): string =>
+  const keyOf = (implement: Spans | null | undefined): string =>
     JSON.stringify(
       implement ? [implement.product, implement.y_span, implement.u_span, implement.sample_time].map((x) => x ?? null) : null,
     );
-  return told(a) === told(b);
+  return keyOf(a) === keyOf(b);
 }
 
 /** The controller for which a request was made; the current one if it names none. A request contains neither name

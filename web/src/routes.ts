@@ -81,21 +81,21 @@ export function parseRoute(hash: string): Route {
   return { screen: "start" };
 }
 
-/** With the plant, and what is told about its loop as far as the link stays short. */
+/** With the plant, and what is typed about its loop as far as the link stays short. */
 function formatPlant({ screen, plant, values }: Extract<Route, { screen: "new" | "relay" }>): string {
-  const told = Object.entries(values).filter(([, value]) => value !== "");
+  const given = Object.entries(values).filter(([, value]) => value !== "");
   const address = (entries: [string, string][]): string => {
     const query = new URLSearchParams(entries).toString();
     return `#/${screen}${plant === "" ? "" : `/${encodeURIComponent(plant)}`}${query ? `?${query}` : ""}`;
   };
   for (const left of [/^$/, /^rest$/, /^(rest|how)\b/, /^(rest|how|today)\b/]) {
-    const short = address(told.filter(([name]) => !left.test(name)));
+    const short = address(given.filter(([name]) => !left.test(name)));
     if (short.length <= MAX_LINK) return short;
   }
-  return address(told.filter(([name]) => !ABOUT_LOOP.test(name)));
+  return address(given.filter(([name]) => !ABOUT_LOOP.test(name)));
 }
 
-/** Names in an address that tell about the loop and not about its plant. */
+/** Names in an address that are about the loop and not about its plant. */
 export const ABOUT_LOOP = /^(loop|today|controller|how|rest)\b/;
 
 /** The hash that parseRoute reads back as the same route. */

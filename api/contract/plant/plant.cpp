@@ -79,8 +79,8 @@ void report_faults(const Json& value, T& plant, Reader& reader) {
     for (Error& fault : plant_faults(plant)) {
         const std::string below = fault.where.substr(fault.where.find('/') + 1),
                           name = below.substr(0, below.find('/'));
-        const bool beside_A = name == "B" || name == "C";
-        if (read(name) && (!beside_A || read("A"))) faults.push_back(std::move(fault));
+        const bool needs_A = name == "B" || name == "C";
+        if (read(name) && (!needs_A || read("A"))) faults.push_back(std::move(fault));
     }
     for (const Error& fault : faults) reader.fault_below(fault.where, 1, fault.message);
 }

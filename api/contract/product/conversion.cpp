@@ -36,7 +36,7 @@ const Description<product::Note>& note_contract() {
         d.field("code", &N::code, words(), "Code for programs, kebab-case.")
             .field("detail", &N::detail, words(), "A sentence with the figures.")
             .field(
-                "deviation", {}, [](const N& note, Writer& out) { out.boolean(product::tells_deviation(note)); },
+                "deviation", {}, [](const N& note, Writer& out) { out.boolean(product::is_deviation(note)); },
                 boolean().schema,
                 "true: a part of the design that the product cannot do, or something to be done beside it. false: how "
                 "the settings were computed.");

@@ -26,7 +26,7 @@ void pid_field(Description<Owner>& d, const char* name, IdealPid Owner::*member,
 const Description<range::PointCost>& point_cost_contract() {
     static const auto description = [] {
         using P = range::PointCost;
-        Description<P> d("PlacePrice", "The cost of one setting at a point.");
+        Description<P> d("PointCost", "The cost of one setting at a point.");
         d.field("at", &P::at, only_answered(number()), "The point.");
         pid_field(d, "own", &P::own, "The point's own optimum under the same limits.");
         d.field("own_IAE", &P::own_IAE, only_answered(number()), "IAE of a unit load step with it.",

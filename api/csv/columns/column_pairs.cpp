@@ -73,8 +73,8 @@ std::optional<NamedPair> data_set(const ColumnFacts& facts) {
     return pair;
 }
 
-std::variant<std::monostate, NamedPair, std::string> input_beside_output(const ColumnFacts& facts,
-                                                                         const std::function<bool(std::size_t)>& free) {
+std::variant<std::monostate, NamedPair, std::string> input_with_output(const ColumnFacts& facts,
+                                                                       const std::function<bool(std::size_t)>& free) {
     std::optional<std::size_t> input, output;
     bool reference = false;
     for (std::size_t i = 0; i < facts.size(); ++i) {

@@ -26,7 +26,7 @@ std::optional<NamedPair> data_set(const ColumnFacts& facts);
 /// "input" next to "output": a controller's input is the plant's output. A set point shows that these are the
 /// controller's words; otherwise u is the column that stays on its levels. A sentence if neither shows it. `free` is
 /// true for columns that may be u or y.
-std::variant<std::monostate, NamedPair, std::string> input_beside_output(const ColumnFacts& facts,
-                                                                         const std::function<bool(std::size_t)>& free);
+std::variant<std::monostate, NamedPair, std::string> input_with_output(const ColumnFacts& facts,
+                                                                       const std::function<bool(std::size_t)>& free);
 
 }  // namespace tunewright::api

@@ -67,7 +67,7 @@ CsvFault equal_columns(ColumnRole role, ColumnRole other) {
     return column_fault(role, role_name(role) + " and " + role_name(other) + " are the same column; choose another.");
 }
 
-CsvFault step_beside_column(const ColumnFacts& facts, const std::vector<std::size_t>& columns) {
+CsvFault step_with_column(const ColumnFacts& facts, const std::vector<std::size_t>& columns) {
     return {"u_step", "u_step is for a file without u, and the file has " + facts.shown(columns) +
                           ". Remove u_step; if that is another quantity, rename the column."};
 }

@@ -32,7 +32,7 @@ CsvFault missing_column(const ColumnFacts& facts, ColumnRole role);
 CsvFault equal_columns(ColumnRole role, ColumnRole other);
 
 /// The fault if a step of u is given and the file has u in `columns`.
-CsvFault step_beside_column(const ColumnFacts& facts, const std::vector<std::size_t>& columns);
+CsvFault step_with_column(const ColumnFacts& facts, const std::vector<std::size_t>& columns);
 
 /// The note if a step of u is given and `columns` may be u: they are not read.
 std::string columns_unread(const ColumnFacts& facts, const std::vector<std::size_t>& columns);

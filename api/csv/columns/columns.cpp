@@ -29,9 +29,9 @@ public:
         find_terms();
         if (const auto letters = fold_umlauts(facts_)) take_pair(*letters);
         find_spacing();
-        refuse_step_beside_column();
+        refuse_step_with_column();
         if (wanted(kTimeRole)) take_fitting(kTimeRole, fits(kTimeRole));
-        read_input_beside_output();
+        read_input_with_output();
         if (!faults_.empty()) return found_;
         read_input_and_output();
         if (!faults_.empty()) return found_;
@@ -152,8 +152,8 @@ private:
         };
         for (const auto same : {stem, number_behind}) {
             if (same == stem && !layout_.pairs && !chosen) continue;
-            if (const auto column = known(kInputRole, u)) keep_beside(facts_, *column, same, y);
-            if (const auto column = known(kOutputRole, y)) keep_beside(facts_, *column, same, u);
+            if (const auto column = known(kInputRole, u)) keep_partner(facts_, *column, same, y);
+            if (const auto column = known(kOutputRole, y)) keep_partner(facts_, *column, same, u);
         }
     }
 
@@ -173,8 +173,8 @@ private:
         return pair.has_value();
     }
 
-    void read_input_beside_output() {
-        const auto found = input_beside_output(facts_, [&](std::size_t column) { return may_be(column, kInputRole); });
+    void read_input_with_output() {
+        const auto found = input_with_output(facts_, [&](std::size_t column) { return may_be(column, kInputRole); });
         if (!wanted(kInputRole) || !wanted(kOutputRole)) return;
         if (const auto* pair = std::get_if<NamedPair>(&found)) take_pair(*pair);
         if (const auto* sentence = std::get_if<std::string>(&found))
@@ -251,7 +251,7 @@ private:
         }
         for (const ColumnRole role : {kOutputRole, kInputRole}) {
             for (const auto same : {stem, number_behind}) {
-                if (found_.at[role]) keep_beside(facts_, *found_.at[role], same, r);
+                if (found_.at[role]) keep_partner(facts_, *found_.at[role], same, r);
             }
         }
         if (r.best.size() == 1) return take(kReferenceRole, r.best.front());
@@ -296,7 +296,7 @@ private:
     }
 
     // A given step that replaces a u of the file would be at another time than the real one.
-    void refuse_step_beside_column() {
+    void refuse_step_with_column() {
         if (!options_.u_step) return;
         if (chosen_[kInputRole])
             return faults_.push_back(
@@ -305,7 +305,7 @@ private:
         std::erase_if(u.best, [&](std::size_t column) { return profiles_[column].changes == 0; });
         if (u.best.empty()) return;
         const auto level = match(facts_.heading(u.best.front()), kInputRole)->level;
-        if (level == 1) return faults_.push_back(step_beside_column(facts_, u.best));
+        if (level == 1) return faults_.push_back(step_with_column(facts_, u.best));
         found_.unread = columns_unread(facts_, u.best);
     }
 

@@ -111,7 +111,7 @@ void keep_moving(const ColumnFacts& facts, NameFits& fits, std::vector<std::stri
     fits.best = std::move(moving);
 }
 
-void keep_beside(const ColumnFacts& facts, std::size_t column, std::string (*same)(const Heading&), NameFits& fits) {
+void keep_partner(const ColumnFacts& facts, std::size_t column, std::string (*same)(const Heading&), NameFits& fits) {
     const std::string own = same(facts.heading(column));
     std::vector<std::size_t> kept, rest;
     for (const std::size_t i : fits.best) (same(facts.heading(i)) == own ? kept : rest).push_back(i);

@@ -41,7 +41,7 @@ NameFits fits_by_name(const ColumnFacts& facts, ColumnRole role, const std::func
 void keep_moving(const ColumnFacts& facts, NameFits& fits, std::vector<std::string>& notes);
 
 /// Keeps the one column with the same `same` (stem or number_behind) as `column`, if there is exactly one.
-void keep_beside(const ColumnFacts& facts, std::size_t column, std::string (*same)(const Heading&), NameFits& fits);
+void keep_partner(const ColumnFacts& facts, std::size_t column, std::string (*same)(const Heading&), NameFits& fits);
 
 /// ", which ...": the other columns that may be meant, and how to choose them. "" if there are none.
 std::string rivals(const ColumnFacts& facts, ColumnRole role, const NameFits& fits);

@@ -192,7 +192,7 @@ void note_evidence(const Comparison& it, std::vector<Note>& notes) {
 
 }  // namespace
 
-bool tells_deviation(const Note& note) {
+bool is_deviation(const Note& note) {
     static constexpr std::string_view kOthers[] = {"action",           "clock",     "default", "discretisation",
                                                    "outside-the-twin", "unverified"};
     return std::ranges::find(kOthers, note.code) == std::end(kOthers);

@@ -40,7 +40,7 @@ struct Note {
 
 /// True if the note names a part of the design that the product cannot implement, or something to do in addition; other
 /// notes say how the settings were computed. Decided by the code alone.
-bool tells_deviation(const Note& note);
+bool is_deviation(const Note& note);
 
 struct Converted {
     Settings settings = {};  ///< in full precision

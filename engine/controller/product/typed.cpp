@@ -200,9 +200,11 @@ double rounded(const Parameter& parameter, double value) {
 std::string range_text(const Parameter& parameter) {
     const Range& range = parameter.range;
     const std::string unit = parameter.unit.empty() ? "" : " " + std::string(parameter.unit);
-    if (std::isinf(range.high)) return "at least " + text(range.low, 6) + unit;
-    if (std::isinf(range.low)) return "at most " + text(range.high, 6) + unit;
-    return text(range.low, 6) + " to " + text(range.high, 6) + unit;
+    constexpr int kAllDigits = 10;  // of a 32-bit integer
+    const std::string low = text(range.low, kAllDigits), high = text(range.high, kAllDigits);
+    if (std::isinf(range.high)) return "at least " + low + unit;
+    if (std::isinf(range.low)) return "at most " + high + unit;
+    return low + " to " + high + unit;
 }
 
 Settings as_typed(const Product& product, const Settings& settings) {

@@ -84,11 +84,11 @@ std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, co
 }
 
 bool usable(const Refined& r, std::size_t i) {
-    constexpr double kMaxKnownGainError = 0.3;                             // standard error over the gain
-    constexpr double kMaxLeft = 0.1, kBesideBest = 0.003, kTimesBest = 3;  // of the set point's effect on y
+    constexpr double kMaxKnownGainError = 0.3;                            // standard error over the gain
+    constexpr double kMaxLeft = 0.1, kAboveBest = 0.003, kTimesBest = 3;  // of the set point's effect on y
     const double min = *std::ranges::min_element(r.left);
     return r.search.fits[i].determined && r.mismatch[i] < kMaxMismatch && r.gain_error[i] < kMaxKnownGainError &&
-           r.left[i] < std::min(kMaxLeft, kBesideBest + kTimesBest * min);
+           r.left[i] < std::min(kMaxLeft, kAboveBest + kTimesBest * min);
 }
 
 /// Chooses the structure whose residual the set point explains least, if the one that least squares preferred is not

@@ -296,7 +296,7 @@ double fit_percent(const CleanRecord& record, const Fit& fit) {
     return 100 * (1 - std::sqrt(left / squares_about_mean(record.y)));
 }
 
-bool looks_integrating(const Fit& fit) {
+bool is_nearly_integrating(const Fit& fit) {
     const Structure structure = fit.form.structure;
     constexpr double kWithoutEnd = 10, kWithoutEndUnstable = 2;  // record lengths
     if (structure == Structure::fopdt) return fit.shape.T() > kWithoutEnd;
@@ -374,7 +374,7 @@ StructureChoice choose(const std::vector<Fit>& fits, const std::vector<double>& 
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
         if (!fits[i].determined) continue;
         if (slowest < 0 || criteria[i] < criteria[slowest]) slowest = i;
-        if (!looks_integrating(fits[i]) && (best < 0 || criteria[i] < criteria[best])) best = i;
+        if (!is_nearly_integrating(fits[i]) && (best < 0 || criteria[i] < criteria[best])) best = i;
     }
     // A model that looks like an integrator is replaced by an integrating structure, unless none of them explains the
     // record.
@@ -382,7 +382,7 @@ StructureChoice choose(const std::vector<Fit>& fits, const std::vector<double>& 
     if (best < 0) return {-1, ""};
     int chosen = best;
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
-        if (!fits[i].determined || looks_integrating(fits[i])) continue;
+        if (!fits[i].determined || is_nearly_integrating(fits[i])) continue;
         const bool simpler =
             fits[i].form.parameters() < fits[chosen].form.parameters() ||
             (fits[i].form.parameters() == fits[chosen].form.parameters() && criteria[i] < criteria[chosen]);

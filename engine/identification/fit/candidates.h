@@ -98,7 +98,7 @@ struct StructureChoice {
 
 /// A lag of ten record lengths or more (two if it is unstable) cannot be distinguished from an integrator, and its gain
 /// cannot be determined.
-bool looks_integrating(const Fit& fit);
+bool is_nearly_integrating(const Fit& fit);
 
 /// Among determined fits: the least criterion, unless a structure with fewer parameters comes within 5 of it (within 10
 /// of one with a zero, an unseen start or an unstable pole) and the difference of the fits is explained by noise: a

@@ -78,7 +78,7 @@ void warn_slow_or_integrating(const ModelSearch& search, std::vector<Warning>& w
     if (!integrating && search.chosen().shape.slowest_lag() < kMinSlowLag) return;
     for (std::size_t i = 0; i < search.fits.size(); ++i) {
         const Fit& fit = search.fits[i];
-        if (!fit.determined || fit.form.structure == Structure::unstable || looks_integrating(fit)) continue;
+        if (!fit.determined || fit.form.structure == Structure::unstable || is_nearly_integrating(fit)) continue;
         if (is_integrating(fit.form.structure) == integrating) continue;
         if (search.criteria[i] - search.criteria[chosen] > kStrongEvidence &&
             search.percents[chosen] - search.percents[i] > kMinPercentGain)
@@ -141,7 +141,7 @@ std::vector<OpenChoice> open_choices(const ModelSearch& search) {
     if (search.chosen().form.structure == Structure::unstable) return open;
     for (std::size_t i = 0; i < search.fits.size(); ++i) {
         const Fit& fit = search.fits[i];
-        if (i == chosen || !fit.determined || looks_integrating(fit) || fit.form.structure == Structure::unstable ||
+        if (i == chosen || !fit.determined || is_nearly_integrating(fit) || fit.form.structure == Structure::unstable ||
             is_integrating(fit.form.structure) != is_integrating(search.chosen().form.structure))
             continue;
         const double above = akaike(i) - akaike(chosen);

@@ -34,7 +34,7 @@ ModelShape at(Structure structure, double L, double T, double rho, double load_t
 
 /// A third lag added to a fitted second order, from nearly 0 to the longest, with the others shortened accordingly; the
 /// fitted shape first.
-std::vector<ModelShape> third_beside(const ModelShape& second) {
+std::vector<ModelShape> third_from(const ModelShape& second) {
     const double L = second.L(), a1 = second.a1(), rho = second.a2() / (a1 * a1), load = second.load_time();
     const double slow = std::sqrt(second.a2());
     std::vector<ModelShape> shapes = {at(Structure::third, L, a1, rho, load, 1e-3 * a1)};
@@ -141,7 +141,7 @@ std::vector<ModelShape> extend_shape(const ModelShape& simpler, Structure struct
         shape.structure = structure;
         return {shape};
     }
-    if (simpler.structure == Structure::sopdt && structure == Structure::third) return third_beside(simpler);
+    if (simpler.structure == Structure::sopdt && structure == Structure::third) return third_from(simpler);
     if (simpler.structure == Structure::ipdt_lag && structure == Structure::ipdt_second) {
         const double T = simpler.T(), spare = 0.5 * L;
         return {at(structure, L, T, 1e-3, load), at(structure, spare, T + spare, 0.2, load),

@@ -189,18 +189,18 @@ FittedRows few_rows(const Fit& fit, std::span<const double> times, const Eigen::
                    {},
                    {},
                    {}};
-    const auto beside = static_cast<Eigen::Index>(fit.nuisance.size());
-    for (Eigen::Index k = 0; k < beside; ++k) few.nuisance.col(k) = sums(fit.nuisance[static_cast<std::size_t>(k)]);
-    few.known_weight = Eigen::Map<const Eigen::VectorXd>(fit.nuisance_weight.data(), beside);
-    few.known_rest = Eigen::Map<const Eigen::VectorXd>(fit.nuisance_rest.data(), beside);
-    few.known_J.resize(beside, length.size());
+    const auto nuisances = static_cast<Eigen::Index>(fit.nuisance.size());
+    for (Eigen::Index k = 0; k < nuisances; ++k) few.nuisance.col(k) = sums(fit.nuisance[static_cast<std::size_t>(k)]);
+    few.known_weight = Eigen::Map<const Eigen::VectorXd>(fit.nuisance_weight.data(), nuisances);
+    few.known_rest = Eigen::Map<const Eigen::VectorXd>(fit.nuisance_rest.data(), nuisances);
+    few.known_J.resize(nuisances, length.size());
     few.weight[rows - 1] = std::sqrt(static_cast<double>(n - block * static_cast<std::size_t>(rows - 1)));
     few.time.array() /= few.weight.array();
     for (Eigen::Index k = 0; k < length.size(); ++k) {
         const std::vector<double>& column = fit.J[static_cast<std::size_t>(k)];
         few.J.col(k) = sums(column) / length[k];
         few.known_J.col(k) =
-            Eigen::Map<const Eigen::VectorXd>(column.data() + column.size() - beside, beside) / length[k];
+            Eigen::Map<const Eigen::VectorXd>(column.data() + column.size() - nuisances, nuisances) / length[k];
     }
     return few;
 }
@@ -214,7 +214,7 @@ struct ScaledProblem {
     int shape = 0;  ///< number of parameters before the linear ones
 
     auto of_samples() const { return J.topRows(samples); }
-    Eigen::MatrixXd beside_samples() const { return J.bottomRows(J.rows() - samples); }
+    Eigen::MatrixXd below_samples() const { return J.bottomRows(J.rows() - samples); }
 };
 
 /// `variance`: long-run variance of the noise.
@@ -247,7 +247,7 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
 /// uncertainty of the gain counts.
 Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& left, const Fit& whole,
                                 std::span<const double> times, bool load) {
-    const Eigen::MatrixXd others = p.beside_samples();
+    const Eigen::MatrixXd others = p.below_samples();
     const Eigen::MatrixXd prior = left.long_run_variance() * gram(others, others);
     Eigen::MatrixXd covariance = p.inverse * (left.weighed(p.of_samples()) + prior) * p.inverse;
     if (!load) return covariance;

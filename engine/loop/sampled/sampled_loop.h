@@ -26,6 +26,8 @@ public:
     /// The plant must outlive this object. `law.Ts` > 0, gains finite.
     SampledLoop(const LinearPlant& plant, const SampledPid& law)
         : plant_(plant, law.Ts, law.computation_delay), law_(law) {}
+    /// `plant`: behind a hold of the law's sample time and computation delay.
+    SampledLoop(const HeldPlant& plant, const SampledPid& law) : plant_(plant), law_(law) {}
 
     LoopPoint at(double omega) const;  ///< 0 < omega <= pi/Ts; at 0 without integrators in plant and controller
     std::complex<double> open_loop(double omega) const;

@@ -56,7 +56,7 @@ concept SqpProblem = requires(Problem& problem, typename Problem::State& state, 
                               const typename Problem::Step& step, double number) {
     /// Linearised constraints always have a common point.
     { Problem::kElastic } -> std::convertible_to<bool>;
-    /// The model's minimum in the region, and the decrease predicted there (`step.promised`); empty: there is none.
+    /// The model's minimum in the region, and the decrease predicted there (`step.predicted`); empty: there is none.
     { problem.step(before, number) } -> std::same_as<std::optional<typename Problem::Step>>;
     { problem.length(step) } -> std::convertible_to<double>;
     /// False ends the run before the step is tried.
@@ -85,16 +85,16 @@ SqpEnd minimise(Problem& problem, typename Problem::State& here, const TrustRegi
             if (radius < region.min_radius || radius > region.hopeless_radius) break;
             continue;
         }
-        end.converged = step->promised < cost_tolerance;
+        end.converged = step->predicted < cost_tolerance;
         if (end.converged || !problem.worth_trying(here, *step, radius)) break;
         auto next = problem.candidate(here, *step, radius);
         const double won = next ? problem.merit(here) - problem.merit(*next) : -std::numeric_limits<double>::infinity();
-        if (!(won > kSqp.min_ratio * step->promised)) {
+        if (!(won > kSqp.min_ratio * step->predicted)) {
             radius = kSqp.shrink * std::min(radius, problem.length(*step));
             if (radius < region.min_radius) break;
             continue;
         }
-        if (won > kSqp.good_ratio * step->promised) radius = std::min(kSqp.grow * radius, region.max_radius);
+        if (won > kSqp.good_ratio * step->predicted) radius = std::min(kSqp.grow * radius, region.max_radius);
         const auto before = std::exchange(here, *std::move(next));
         if (!problem.accepted(here, won)) break;
         problem.differentiate(here);

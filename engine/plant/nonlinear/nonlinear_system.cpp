@@ -69,7 +69,7 @@ private:
             if (start_[i] != 0) state_size_[i] = std::max(std::abs(x[i]), std::abs(start_[i]));
         const std::vector<double> others = terms(A, B);
         for (std::size_t j = 0; j < n_; ++j)
-            if (start_[j] == 0) state_size_[j] = std::max(size_beside(others, A, j), std::abs(x[j]));
+            if (start_[j] == 0) state_size_[j] = std::max(size_from_others(others, A, j), std::abs(x[j]));
         rate_size_ = terms(A, B);
         for (double& size : rate_size_)
             if (!(size > 0)) size = 1;
@@ -88,7 +88,7 @@ private:
 
     // The size of a state that is 0, such as a speed: the value that would weigh as much as the other states in one of
     // the rates; 1 if there is none.
-    double size_beside(const std::vector<double>& others, const std::vector<double>& A, std::size_t j) const {
+    double size_from_others(const std::vector<double>& others, const std::vector<double>& A, std::size_t j) const {
         double size = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < n_; ++i)
             if (A[i * n_ + j] != 0 && others[i] > 0) size = std::min(size, others[i] / std::abs(A[i * n_ + j]));

@@ -79,7 +79,7 @@ protected:
         auto nominal = LinearPlant::make(family.nominal());
         if (!nominal) return nominal.error();
         PointModel model{.at = given_[k].at, .nominal = std::move(*nominal), .members = {}, .measured = {}};
-        for (const Plant& member : members_beside_nominal(family)) {
+        for (const Plant& member : members_without_nominal(family)) {
             auto linear = LinearPlant::make(member);
             if (!linear) return linear.error();
             model.members.push_back(std::move(*linear));
@@ -210,7 +210,7 @@ private:
     /// Only members with the nominal plant's structure: others cannot be interpolated.
     static std::vector<LogRatios> ratios(const PlantFamily& family) {
         std::vector<LogRatios> result;
-        for (const Plant& member : members_beside_nominal(family))
+        for (const Plant& member : members_without_nominal(family))
             if (same_structure(member, family.nominal())) result.push_back(log_ratios(family.nominal(), member));
         return result;
     }

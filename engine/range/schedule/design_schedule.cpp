@@ -163,7 +163,7 @@ bool satisfies(const std::optional<ScheduleDesign>& design) {
     return design && design->holds_limits && design->within_allowance;
 }
 
-void tell(const PointDesigns& places, int rows) {
+void report_progress(const PointDesigns& places, int rows) {
     const RunControl& control = places.control();
     if (!control.progress) return;
     control.progress(Progress{.fraction = std::min(0.9, 0.4 + 0.05 * rows),
@@ -185,7 +185,7 @@ Expected<std::optional<ScheduleDesign>> fewest_rows(LinearDesign& linear, const 
     std::optional<ScheduleDesign> best;
     for (int rows = 2; rows <= kMaxRows && !places.control().stop.stop_requested(); ++rows) {
         if (own.layout(rows, options.interpolation).error > hopeless) continue;
-        tell(places, rows);
+        report_progress(places, rows);
         auto design = linear.with(rows, false);
         if (!design || satisfies(*design)) return design;
         if (*design && nearer(**design, best)) best = **design;
@@ -198,7 +198,7 @@ Expected<std::optional<ScheduleDesign>> nearest(LinearDesign& linear, const Poin
                                                 std::optional<ScheduleDesign> best) {
     for (const int rows : kNearestRows) {
         if (places.control().stop.stop_requested()) break;
-        tell(places, rows);
+        report_progress(places, rows);
         auto design = linear.with(rows, true);
         if (!design) return design;
         if (*design && nearer(**design, best)) best = **design;
@@ -210,7 +210,7 @@ Expected<std::optional<ScheduleDesign>> nearest(LinearDesign& linear, const Poin
 Expected<ScheduleDesign> linear_schedule(PointDesigns& places, OwnOptima& own, const RangeOptions& options,
                                          const std::optional<IdealPid>& one) {
     LinearDesign linear(places, own, options, one);
-    if (options.rows) tell(places, *options.rows);
+    if (options.rows) report_progress(places, *options.rows);
     auto design =
         options.rows ? linear.with(std::max(2, *options.rows), true) : fewest_rows(linear, places, own, options);
     if (design && !options.rows && !satisfies(*design)) design = nearest(linear, places, std::move(*design));

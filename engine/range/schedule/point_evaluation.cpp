@@ -18,19 +18,21 @@ constexpr double kEvaluationTolerance = 3e-4;  // of the simulations
 constexpr double kFineTolerance = 1e-5;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-void add_setting(PointEvaluation& look, const PointDesign& place, const robust::DesignPoint& x, double log_own_IAE,
-                 double above) {
+void add_setting(PointEvaluation& evaluation, const PointDesign& place, const robust::DesignPoint& x,
+                 double log_own_IAE, double above) {
     const PeakLimits& limits = place.problem().limits;
     for (const auto& peak : place.sweep().peaks(x, above)) {
-        look.excess = std::max(look.excess, peak.value);
-        if (peak.kind == robust::ConstraintKind::S) look.Ms = std::max(look.Ms, limits.Ms * std::exp(peak.value));
-        if (peak.kind == robust::ConstraintKind::T) look.Mt = std::max(look.Mt, limits.Mt * std::exp(peak.value));
+        evaluation.excess = std::max(evaluation.excess, peak.value);
+        if (peak.kind == robust::ConstraintKind::S)
+            evaluation.Ms = std::max(evaluation.Ms, limits.Ms * std::exp(peak.value));
+        if (peak.kind == robust::ConstraintKind::T)
+            evaluation.Mt = std::max(evaluation.Mt, limits.Mt * std::exp(peak.value));
     }
-    look.stable = look.stable && robust::is_stable(place.problem(), x);
-    double log_IAE = look.stable ? robust::log_cost(place.problem(), x, kEvaluationTolerance) : kInfinity;
+    evaluation.stable = evaluation.stable && robust::is_stable(place.problem(), x);
+    double log_IAE = evaluation.stable ? robust::log_cost(place.problem(), x, kEvaluationTolerance) : kInfinity;
     // A coarse run may miss that a slow tail has settled.
-    if (look.stable && !std::isfinite(log_IAE)) log_IAE = robust::log_cost(place.problem(), x, kFineTolerance);
-    look.log_cost_ratio = std::max(look.log_cost_ratio, log_IAE - log_own_IAE);
+    if (evaluation.stable && !std::isfinite(log_IAE)) log_IAE = robust::log_cost(place.problem(), x, kFineTolerance);
+    evaluation.log_cost_ratio = std::max(evaluation.log_cost_ratio, log_IAE - log_own_IAE);
 }
 
 }  // namespace
@@ -54,11 +56,11 @@ std::vector<IdealPid> in_use(const Schedule& schedule, double at) {
 PointEvaluation evaluate_at(const PointDesign& place, const std::vector<IdealPid>& settings, double log_own_IAE,
                             bool all_peaks) {
     const double above = all_peaks ? kMinLogRatioOfAll : kMinLogRatioOfHigh;
-    PointEvaluation look{
+    PointEvaluation evaluation{
         .at = place.at(), .stable = true, .Ms = 1, .Mt = 0, .excess = above, .log_cost_ratio = -kInfinity};
-    for (const IdealPid& pid : settings) add_setting(look, place, point_of(pid), log_own_IAE, above);
-    if (!look.stable) look.excess = look.log_cost_ratio = kInfinity;
-    return look;
+    for (const IdealPid& pid : settings) add_setting(evaluation, place, point_of(pid), log_own_IAE, above);
+    if (!evaluation.stable) evaluation.excess = evaluation.log_cost_ratio = kInfinity;
+    return evaluation;
 }
 
 Expected<PointEvaluation> evaluate_between(const PointDesigns& places, const OwnOptima& own,
@@ -79,7 +81,7 @@ constexpr double kMinLogRatioNearLimit = -5e-3;  // ln of a limit's ratio: highe
 constexpr double kMaxLogCostGap = 0.01;          // of ln of the cost, below the allowed one: the same
 constexpr std::size_t kMaxPointsPerRound = 6;    // points added per round
 
-std::vector<double> looked_at(const PointDesigns& places, const Schedule& schedule) {
+std::vector<double> evaluation_places(const PointDesigns& places, const Schedule& schedule) {
     const double low = places.model().low(), high = places.model().high();
     std::vector<double> at;
     for (int i = 0; i <= kRangeEvaluations; ++i) at.push_back(low + (high - low) * i / kRangeEvaluations);
@@ -95,16 +97,16 @@ std::vector<double> looked_at(const PointDesigns& places, const Schedule& schedu
 }
 
 /// Evaluations over the range, ascending, with more of them near a limit or the allowed cost.
-class Looks {
+class ScheduleEvaluations {
 public:
-    Looks(const PointDesigns& places, const OwnOptima& own, const Schedule& schedule)
+    ScheduleEvaluations(const PointDesigns& places, const OwnOptima& own, const Schedule& schedule)
         : places_(places), own_(own), schedule_(schedule) {}
 
     std::optional<Error> take(double at) {
-        const auto look = evaluate_between(places_, own_, in_use(schedule_, at), at, false);
-        if (!look) return look.error();
-        const auto after = std::ranges::upper_bound(looks_, at, {}, &PointEvaluation::at);
-        looks_.insert(after, *look);
+        const auto evaluation = evaluate_between(places_, own_, in_use(schedule_, at), at, false);
+        if (!evaluation) return evaluation.error();
+        const auto after = std::ranges::upper_bound(evaluations_, at, {}, &PointEvaluation::at);
+        evaluations_.insert(after, *evaluation);
         return std::nullopt;
     }
 
@@ -112,8 +114,8 @@ public:
     /// neighbours.
     std::optional<Error> refine(double PointEvaluation::*value, double threshold) {
         std::vector<double> wanted;
-        for (std::size_t i = 1; i + 1 < looks_.size(); ++i) {
-            const PointEvaluation &a = looks_[i - 1], &b = looks_[i], &c = looks_[i + 1];
+        for (std::size_t i = 1; i + 1 < evaluations_.size(); ++i) {
+            const PointEvaluation &a = evaluations_[i - 1], &b = evaluations_[i], &c = evaluations_[i + 1];
             if (!is_top(i, value) || !(b.*value > threshold) || !std::isfinite(a.*value + b.*value + c.*value))
                 continue;
             const double left = (b.*value - a.*value) / (b.at - a.at), right = (c.*value - b.*value) / (c.at - b.at);
@@ -128,32 +130,33 @@ public:
     }
 
     double largest(double PointEvaluation::*value) const {
-        return (*std::ranges::max_element(looks_, {}, value)).*value;
+        return (*std::ranges::max_element(evaluations_, {}, value)).*value;
     }
 
     /// Local maxima above the threshold, the largest first.
     std::vector<double> tops(double PointEvaluation::*value, double threshold) const {
         std::vector<std::size_t> found;
-        for (std::size_t i = 0; i < looks_.size(); ++i)
-            if (looks_[i].*value > threshold && (is_top(i, value) || !std::isfinite(looks_[i].*value)))
+        for (std::size_t i = 0; i < evaluations_.size(); ++i)
+            if (evaluations_[i].*value > threshold && (is_top(i, value) || !std::isfinite(evaluations_[i].*value)))
                 found.push_back(i);
-        std::ranges::stable_sort(found, std::greater{}, [&](std::size_t i) { return looks_[i].*value; });
+        std::ranges::stable_sort(found, std::greater{}, [&](std::size_t i) { return evaluations_[i].*value; });
         found.resize(std::min(found.size(), kMaxPointsPerRound));
         std::vector<double> at;
-        for (const std::size_t i : found) at.push_back(looks_[i].at);
+        for (const std::size_t i : found) at.push_back(evaluations_[i].at);
         return at;
     }
 
 private:
     bool is_top(std::size_t i, double PointEvaluation::*value) const {
-        const double here = looks_[i].*value;
-        return (i == 0 || looks_[i - 1].*value <= here) && (i + 1 == looks_.size() || looks_[i + 1].*value < here);
+        const double here = evaluations_[i].*value;
+        return (i == 0 || evaluations_[i - 1].*value <= here) &&
+               (i + 1 == evaluations_.size() || evaluations_[i + 1].*value < here);
     }
 
     const PointDesigns& places_;
     const OwnOptima& own_;
     const Schedule& schedule_;
-    std::vector<PointEvaluation> looks_;
+    std::vector<PointEvaluation> evaluations_;
 };
 
 }  // namespace
@@ -168,19 +171,19 @@ std::vector<double> bends_of(const RangeModel& model, const Schedule& schedule) 
 }
 
 Expected<Verified> verify(const PointDesigns& places, const OwnOptima& own, const Schedule& schedule, double allowed) {
-    Looks looks(places, own, schedule);
-    for (const double at : looked_at(places, schedule))
-        if (auto error = looks.take(at)) return *error;
+    ScheduleEvaluations evaluations(places, own, schedule);
+    for (const double at : evaluation_places(places, schedule))
+        if (auto error = evaluations.take(at)) return *error;
     for (int round = 0; round < 2; ++round) {
-        if (auto error = looks.refine(&PointEvaluation::excess, kMinLogRatioNearLimit)) return *error;
-        if (auto error = looks.refine(&PointEvaluation::log_cost_ratio, allowed - kMaxLogCostGap)) return *error;
+        if (auto error = evaluations.refine(&PointEvaluation::excess, kMinLogRatioNearLimit)) return *error;
+        if (auto error = evaluations.refine(&PointEvaluation::log_cost_ratio, allowed - kMaxLogCostGap)) return *error;
     }
-    Verified result{.excess = looks.largest(&PointEvaluation::excess),
-                    .log_cost_ratio = looks.largest(&PointEvaluation::log_cost_ratio),
+    Verified result{.excess = evaluations.largest(&PointEvaluation::excess),
+                    .log_cost_ratio = evaluations.largest(&PointEvaluation::log_cost_ratio),
                     .worst = {}};
     const bool little = result.excess <= kMaxSmallLogExcess && result.log_cost_ratio <= allowed;
-    if (!little) result.worst = looks.tops(&PointEvaluation::excess, limits::kMaxRelativeExcessVerified);
-    const auto over_allowance = looks.tops(&PointEvaluation::log_cost_ratio, allowed);
+    if (!little) result.worst = evaluations.tops(&PointEvaluation::excess, limits::kMaxRelativeExcessVerified);
+    const auto over_allowance = evaluations.tops(&PointEvaluation::log_cost_ratio, allowed);
     result.worst.insert(result.worst.end(), over_allowance.begin(), over_allowance.end());
     return result;
 }

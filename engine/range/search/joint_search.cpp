@@ -27,7 +27,7 @@ struct JointSqpConstants {
     double max_penalty = 4e4;        ///< near the tightest limits of any design the multipliers are unbounded
     double harder = 10;              ///< factor of the penalty if the limits were not kept
     double near = -0.25;             ///< ln of a limit's ratio: smaller ones cannot become active within a step
-    double near_price = 0.5;         ///< in ln of the cost: smaller ones cannot become the largest within a step
+    double near_worst = 0.5;         ///< in ln of the cost: smaller ones cannot become the largest within a step
     double aim_below = 1e-6;         ///< feasibility is aimed at by this margin
     std::size_t max_peaks = 6;       ///< of each point, the largest ones, as constraints of a step
     double slack_curvature = 1e-6;   ///< of the two unknowns that enter linearly, because H must be positive definite
@@ -71,7 +71,7 @@ public:
     using State = tunewright::range::State;
     struct Step {
         VectorXd p;
-        double promised = 0;  // predicted decrease of the merit function
+        double predicted = 0;  // predicted decrease of the merit function
         VectorXd multipliers;
     };
     static constexpr bool kElastic = true;
@@ -127,7 +127,7 @@ public:
 
     void differentiate(State& state) const {
         for (PointState& one : state.places) {
-            if (problem_.aim == Aim::worst && one.cost < state.cost - k_.near_price) continue;
+            if (problem_.aim == Aim::worst && one.cost < state.cost - k_.near_worst) continue;
             one.cost_gradient = as_vector(one.evaluated->with_gradient().gradient);
             one.has_gradient = one.cost_gradient.allFinite();
         }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "engine/evaluation/evaluate_sampled.h"
 #include "engine/evaluation/performance_figures.h"
 #include "engine/simulation/course/course.h"
 #include "engine/simulation/linear/indices.h"
@@ -30,6 +31,10 @@ constexpr const char* kStays = "u stays at its limit.";
 constexpr const char* kNeverThere =
     "y does not come to rest at the target, so the integral of the error is infinite. Give a length.";
 constexpr const char* kTooShort = "The simulated time ends before the load.";
+constexpr const char* kCut =
+    "The simulation ended early: y grows without bound, or this time has too many samples. Shorten the hold or give a "
+    "length.";
+constexpr double kQuietShare = 0.1;  // of a given time: y rests if it has stayed in kRestBand for so long at its end
 
 /// One loop, ready to run any course.
 struct RunningLoop {
@@ -37,7 +42,10 @@ struct RunningLoop {
     std::variant<ParallelPid, SampledPid> law;
     ProgramLimits program;
     StepResponse response;
+    bool to_rest = true;  ///< it was run until it rests, not for a given time
+    bool whole = true;    ///< it was run to its end
 
+    double last() const { return response.nodes.back().t; }
     double resolution() const { return std::holds_alternative<SampledPid>(law) ? program.u_resolution : 0; }
 };
 
@@ -79,7 +87,7 @@ public:
 
     /// The time after the ramp that this loop needs to come to rest without the load; empty: it does not settle.
     std::optional<double> hold_of(const RunningLoop& loop) const {
-        const StepResponse response = run(loop, course_, {});
+        const StepResponse response = run(loop, unrounded(loop), course_, {});
         if (!response.settles) return std::nullopt;
         return std::max(0.0, two_digits_up(kSpaceAfterRest * quiet_after(response, 0)) - course_.ramp_time);
     }
@@ -93,16 +101,33 @@ public:
         }
         parallel_for(control.spread, static_cast<int>(loops.size()), [&](int i) {
             RunningLoop& loop = loops[static_cast<std::size_t>(i)];
-            loop.response = run(loop, course_, step_.length);
+            run_whole(loop);
             loop.entry->own_step = figures(loop);
         });
         if (points_ >= 2) draw(loops);
     }
 
 private:
-    StepResponse run(const RunningLoop& loop, const Course& course, std::optional<double> horizon) const {
+    static ProgramLimits unrounded(const RunningLoop& loop) { return {loop.program.output, 0, 0, 0}; }
+
+    /// A loop that rounding keeps moving is run for as long as it would need without.
+    void run_whole(RunningLoop& loop) const {
+        std::optional<double> horizon = step_.length;
+        loop.whole = true;
+        if (!horizon && std::holds_alternative<SampledPid>(loop.law) && !comes_to_rest(loop.program)) {
+            const StepResponse without = run(loop, unrounded(loop), course_, {});
+            horizon = without.nodes.back().t;
+            loop.whole = without.settles;
+        }
+        loop.to_rest = !horizon;
+        loop.response = run(loop, loop.program, course_, horizon);
+        loop.whole = loop.whole && loop.response.settles;
+    }
+
+    StepResponse run(const RunningLoop& loop, const ProgramLimits& program, const Course& course,
+                     std::optional<double> horizon) const {
         if (const auto* law = std::get_if<SampledPid>(&loop.law))
-            return simulate_course(plant_, *law, loop.program, course,
+            return simulate_course(plant_, *law, program, course,
                                    {.tolerance = kTolerance,
                                     .settled = kSettled,
                                     .horizon = horizon,
@@ -152,39 +177,50 @@ private:
         return sum;
     }
 
-    bool rests_at_target(const StepResponse& response) const {
-        double size = std::abs(course_.r);
-        for (const auto& node : response.nodes) size = std::max(size, std::abs(node.y));
-        return response.settles && std::abs(response.y_final - course_.r) <= kRestTolerance * size;
+    bool rests(const RunningLoop& loop) const {
+        return loop.whole && (loop.to_rest || quiet_after(loop.response, 0) <= (1 - kQuietShare) * loop.last());
     }
 
-    OwnSetpointFigures setpoint_figures_of(const StepResponse& response) const {
+    bool rests_at_target(const RunningLoop& loop) const {
+        double size = std::abs(course_.r);
+        for (const auto& node : loop.response.nodes) size = std::max(size, std::abs(node.y));
+        return rests(loop) && std::abs(loop.response.y_final - course_.r) <= kRestTolerance * size;
+    }
+
+    /// The reason why the integral of the error from there to the end is no figure; null: it is one.
+    const char* no_integral(const RunningLoop& loop) const {
+        if (!loop.whole) return loop.to_rest && loop.response.nodes.back().t > load_start() ? kNeverThere : kCut;
+        return loop.to_rest && !rests_at_target(loop) ? kNeverThere : nullptr;
+    }
+
+    OwnSetpointFigures setpoint_figures_of(const RunningLoop& loop) const {
         const double end = course_.load ? load_start() : kInfinity, r = course_.r;
-        const Nodes nodes = part(response.nodes, 0, end);
+        const Nodes nodes = part(loop.response.nodes, 0, end);
         OwnSetpointFigures out;
-        out.IAE = course_.load || step_.length || rests_at_target(response) ? Figure(IAE(response.nodes, 0, end))
-                                                                            : no_figure(kNeverThere);
+        const char* why = course_.load ? (loop.last() < end && !loop.whole ? kCut : nullptr) : no_integral(loop);
+        out.IAE = why == nullptr ? Figure(IAE(loop.response.nodes, 0, end)) : no_figure(why);
         const Extremes extremes = extremes_of_y(nodes);
         const double beyond = std::max(0.0, r > 0 ? extremes.max - r : r - extremes.min);
-        out.overshoot = beyond;
-        out.overshoot_percent = 100 * beyond / std::abs(r);
+        out.overshoot = beyond > kRestTolerance * std::abs(r) ? beyond : 0;
+        out.overshoot_percent = 100 * *out.overshoot / std::abs(r);
         out.settling_time = Figure(last_outside(nodes, r, kSettlingBand * std::abs(r)),
                                    course_.load ? "y is not within 2 % of the step when the load comes."
                                                 : "y does not stay within 2 % of the step.");
         return out;
     }
 
-    OwnLoadFigures load_figures_of(const StepResponse& response) const {
+    OwnLoadFigures load_figures_of(const RunningLoop& loop) const {
         OwnLoadFigures out;
         out.start = load_start();
-        if (step_.length && out.start >= *step_.length) {
-            out.IAE = out.peak = out.recovery_time = no_figure(kTooShort);
+        const bool too_short = step_.length && out.start >= *step_.length;
+        if (too_short || (!loop.whole && loop.last() <= out.start)) {
+            out.IAE = out.peak = out.recovery_time = no_figure(too_short ? kTooShort : kCut);
             return out;
         }
-        Nodes nodes = part(response.nodes, out.start, kInfinity);
+        Nodes nodes = part(loop.response.nodes, out.start, kInfinity);
         for (auto& node : nodes) node.y -= course_.r;
-        out.IAE = step_.length || rests_at_target(response) ? Figure(IAE(response.nodes, out.start, kInfinity))
-                                                            : no_figure(kNeverThere);
+        const char* why = no_integral(loop);
+        out.IAE = why == nullptr ? Figure(IAE(loop.response.nodes, out.start, kInfinity)) : no_figure(why);
         const Extremes extremes = extremes_of_y(nodes);
         out.peak = std::abs(extremes.max) >= std::abs(extremes.min) ? extremes.max : extremes.min;
         out.recovery_time = Figure(last_outside(nodes, 0, kSettlingBand * std::abs(*out.peak)),
@@ -193,14 +229,15 @@ private:
     }
 
     /// The time that u spends at `limit`; infinite where it stays there.
-    Figure time_at(const StepResponse& response, double limit, double resolution) const {
+    Figure time_at(const RunningLoop& loop, double limit) const {
+        const StepResponse& response = loop.response;
         if (!std::isfinite(limit)) return 0.0;
         const double range = std::isfinite(limits_.max - limits_.min) ? limits_.max - limits_.min : std::abs(limit),
-                     band = std::max(kLimitTolerance * range, resolution);
+                     band = std::max(kLimitTolerance * range, loop.resolution());
         const auto at = [&](const ResponseNode& node) {
             return limit == limits_.max ? node.u >= limit - band : node.u <= limit + band;
         };
-        if (!step_.length && response.settles && at({.u = response.u_final}) && at(response.nodes.back()))
+        if (loop.to_rest && loop.whole && at({.u = response.u_final}) && at(response.nodes.back()))
             return no_figure(kStays);
         double time = 0;
         for (std::size_t i = 1; i < response.nodes.size(); ++i)
@@ -223,8 +260,8 @@ private:
     OwnStepEntry figures(const RunningLoop& loop) const {
         const StepResponse& response = loop.response;
         OwnStepEntry out;
-        if (course_.r != 0) out.setpoint = setpoint_figures_of(response);
-        if (course_.load) out.load = load_figures_of(response);
+        if (course_.r != 0) out.setpoint = setpoint_figures_of(loop);
+        if (course_.load) out.load = load_figures_of(loop);
         Nodes of_u = response.nodes;
         for (auto& node : of_u) {
             node.y = node.u;
@@ -234,20 +271,19 @@ private:
         out.u_min = step_.u + std::clamp(u.min, limits_.min, limits_.max);
         out.u_max = step_.u + std::clamp(u.max, limits_.min, limits_.max);
         out.travel = total_variation(response.nodes);
-        out.time_at_min = time_at(response, limits_.min, loop.resolution());
-        out.time_at_max = time_at(response, limits_.max, loop.resolution());
+        out.time_at_min = time_at(loop, limits_.min);
+        out.time_at_max = time_at(loop, limits_.max);
         out.u_needed = u_needed();
-        out.settles = response.settles;
-        out.y_final = response.settles && !step_.length
-                          ? Figure(step_.y + response.y_final)
-                          : no_figure("The loop does not rest within the simulated time.");
+        out.settles = rests(loop);
+        out.y_final = out.settles ? Figure(step_.y + response.y_final)
+                                  : no_figure("The loop does not rest within the simulated time.");
         return out;
     }
 
     void draw(std::vector<RunningLoop>& loops) const {
         std::vector<double> ends;
         for (const RunningLoop& loop : loops)
-            if (loop.response.settles)
+            if (loop.whole)
                 ends.push_back(kSpaceAfterRest * (quiet_after(loop.response, load_start()) - load_start()));
         const double start = load_start();
         for (RunningLoop& loop : loops) {
@@ -255,7 +291,7 @@ private:
             const double wanted = step_.length   ? *step_.length
                                   : ends.empty() ? last
                                                  : two_digits_up(start + std::max(common(ends), shortest_end()));
-            loop.entry->own_step->trace = trace(loop.response, loop.response.settles ? wanted : std::min(wanted, last));
+            loop.entry->own_step->trace = trace(loop.response, loop.whole && loop.to_rest ? wanted : std::min(wanted, last));
         }
     }
     /// So much of the plot comes after the load or the step at least.
@@ -296,11 +332,11 @@ std::variant<std::variant<ParallelPid, SampledPid>, OwnStepRefusal> law_of(const
 
 }  // namespace
 
-void simulate_own_steps(std::vector<TuningEntry>& entries, const AnalysedPlant& subject,
+bool simulate_own_steps(std::vector<TuningEntry>& entries, const AnalysedPlant& subject,
                         const std::optional<OwnStep>& step, int points,
                         const std::function<const device::DeviceModel*(const TuningEntry&)>& device_of,
                         const RunControl& control) {
-    if (!step) return;
+    if (!step) return true;
     const LinearPlant* plant = subject.linear();
     std::optional<OwnStepRuns> runs;
     if (plant != nullptr) runs.emplace(*plant, *step, points, control.stop);
@@ -323,7 +359,7 @@ void simulate_own_steps(std::vector<TuningEntry>& entries, const AnalysedPlant& 
         if (runs->limited()) loop.program.output = runs->limits();
         loops.push_back(std::move(loop));
     }
-    if (loops.empty()) return;
+    if (loops.empty()) return true;
     double hold = 0;
     if (runs->needs_hold()) {
         std::vector<double> holds;
@@ -332,6 +368,10 @@ void simulate_own_steps(std::vector<TuningEntry>& entries, const AnalysedPlant& 
         hold = holds.empty() ? runs->unsettled_hold() : common(holds);
     }
     runs->run_with_load(loops, hold, control);
+    if (!control.stop.stop_requested()) return true;
+    // A run that was stopped has figures of a shorter time.
+    for (TuningEntry& entry : entries) entry.own_step.reset();
+    return false;
 }
 
 }  // namespace tunewright

@@ -21,8 +21,11 @@ namespace tunewright {
 ///    1 % of its rest, and a quarter more, is that of all, but at most three times the shortest.
 /// 3. Each loop is run with the load, and its figures are taken. All traces end together, by the same rule.
 ///
+/// A loop that rounding keeps moving is run for as long as it would need without. False: `control` asked to stop, and
+/// no entry has a step.
+///
 /// `points`: of each trace, 0: none. `device_of`: the user's controller of an entry; null where it has none.
-void simulate_own_steps(std::vector<TuningEntry>& entries, const AnalysedPlant& subject,
+bool simulate_own_steps(std::vector<TuningEntry>& entries, const AnalysedPlant& subject,
                         const std::optional<OwnStep>& step, int points,
                         const std::function<const device::DeviceModel*(const TuningEntry&)>& device_of,
                         const RunControl& control);

@@ -95,14 +95,14 @@ public:
         if (auto error = look_at_places()) return *error;
         if (auto error = run_across()) return *error;
         if (control_.now_ms) result_.compute_ms = control_.now_ms() - started;
-        tell("The range is complete.");
+        report_progress("The range is complete.");
         return std::move(result_);
     }
 
 private:
     bool stopped() const { return control_.stop.stop_requested(); }
 
-    void tell(const char* message) const {
+    void report_progress(const char* message) const {
         if (control_.progress) control_.progress({.fraction = 1, .stage = "evaluate", .message = message, .best = {}});
     }
 

@@ -132,7 +132,7 @@ void RecordReplayer::take_plants() {
         record_.refused = ReplayRefusal::coarse_rows;
         return;
     }
-    for (const Plant& member : members_beside_nominal(*region))
+    for (const Plant& member : members_without_nominal(*region))
         if (auto plant = LinearPlant::make(member)) plants_.push_back(std::move(*plant));
 }
 

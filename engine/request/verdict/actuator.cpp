@@ -73,6 +73,8 @@ StepsBeyondActuator steps_beyond_actuator(const VerdictInput& c) {
     return needs ? StepsBeyondActuator{!needs->carries_setpoint(), !needs->carries_load()} : StepsBeyondActuator{};
 }
 
+bool stays_bounded(const LinearPlant& plant) { return plant.integrators() <= 0 && plant.unstable_poles() == 0; }
+
 OptionalFinding actuator_too_small(const VerdictInput& c) {
     const auto needs = needs_of(c);
     if (!needs) return {};
@@ -82,7 +84,7 @@ OptionalFinding actuator_too_small(const VerdictInput& c) {
     const EvaluateOptions& options = c.context.options;
     const Labels& labels = c.context.labels;
     const LinearPlant& plant = *c.context.subject.linear();
-    const bool bounded = plant.integrators() <= 0 && plant.unstable_poles() == 0;
+    const bool bounded = stays_bounded(plant);
     const bool asked = (setpoint_fails && c.context.given_steps.setpoint) || (load_fails && c.context.given_steps.load);
     FindingBuilder draft("actuator-too-small", !asked ? Level::note : bounded ? Level::warning : Level::bad);
     const bool upper = (setpoint_fails ? setpoint->u : load.u) > limits.max;

@@ -43,6 +43,9 @@ const Performance& performance_of(const TuningEntry& entry);
 
 // primary_findings.cpp: statements on the whole loop
 
+/// True: y of this plant stays bounded while u stays at a limit.
+bool stays_bounded(const LinearPlant& plant);
+
 /// All that apply, the most severe first; at least one. `good` only where every plant that the answer knows of and the
 /// implemented loop are stable and settle, with Ms at most 1.7 and within its limit.
 std::vector<Finding> primary_findings(const VerdictInput& c);

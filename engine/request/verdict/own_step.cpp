@@ -31,8 +31,10 @@ std::optional<double> exceeded_limit(const OwnStep& step, const OwnStepEntry& en
     return {};
 }
 
-Finding out_of_reach(const OwnStep& step, const OwnStepEntry& entry, double limit, const Labels& labels) {
-    FindingBuilder draft("own-step-out-of-reach", Level::warning);
+Finding out_of_reach(const OwnStep& step, const OwnStepEntry& entry, double limit, const LinearPlant& plant,
+                     const Labels& labels) {
+    const bool bounded = stays_bounded(plant);
+    FindingBuilder draft("own-step-out-of-reach", bounded ? Level::warning : Level::bad);
     draft.say("No controller can hold the target of your step: ")
         .number("target", step.target, printed_unit(labels.y))
         .say(step.load && step.load->shape != LoadShape::pulse ? " after the load needs u = " : " needs u = ")
@@ -40,6 +42,7 @@ Finding out_of_reach(const OwnStep& step, const OwnStepEntry& entry, double limi
         .say(", and the limit is ")
         .number("u_limit", limit, printed_unit(labels.u));
     if (entry.y_final) draft.say("; y rests at ").number("y_final", *entry.y_final, printed_unit(labels.y));
+    if (!bounded) draft.say("; y grows without bound");
     return draft.say(".");
 }
 
@@ -84,7 +87,8 @@ OptionalFinding own_step(const VerdictInput& c) {
     if (!entry || entry->refused || step == nullptr) return {};
     const Labels& labels = c.context.labels;
     if (c.has_integral())
-        if (const auto limit = exceeded_limit(*step, *entry)) return out_of_reach(*step, *entry, *limit, labels);
+        if (const auto limit = exceeded_limit(*step, *entry)) 
+            return out_of_reach(*step, *entry, *limit, *c.context.subject.linear(), labels);
     const auto limit = reached_limit(*step, *entry);
     FindingBuilder draft(limit ? "own-step-saturates" : "own-step", Level::note);
     if (entry->setpoint) say_setpoint(draft, *step, *entry, labels);

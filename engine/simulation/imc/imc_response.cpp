@@ -204,10 +204,10 @@ private:
     void take_step(std::vector<double>& x, double h, double t) {
         const double from = memory_.back().t;
         const Signal e0 = seen(from, true);
-        const bool looks_ahead = h > theta_ + slack_ || (L_ > 0 && h > L_ + slack_);
+        const bool reaches_delayed = h > theta_ + slack_ || (L_ > 0 && h > L_ + slack_);
         const ExactStep& step = exact(h);
         std::vector<double> next;
-        for (int i = 0; i < (looks_ahead ? kCorrections : 1); ++i) {
+        for (int i = 0; i < (reaches_delayed ? kCorrections : 1); ++i) {
             const Signal e1 = seen(t, false);
             if (i > 0) memory_.pop_back();
             next = x;

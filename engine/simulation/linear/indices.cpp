@@ -219,6 +219,16 @@ double total_variation(const std::vector<ResponseNode>& nodes) {
     return sum;
 }
 
+namespace {
+
+/// True if y stays within these bounds between two nodes that do, by the cubic's control values.
+bool controls_between(const ResponseNode& a, const ResponseNode& b, double min, double max) {
+    const double third = (b.t - a.t) * kThird, first = a.y + a.y_slope * third, second = b.y - b.y_slope * third;
+    return std::min(first, second) >= min && std::max(first, second) <= max;
+}
+
+}  // namespace
+
 Extremes extremes_of_y(const std::vector<ResponseNode>& nodes) {
     Extremes result;
     const auto note = [&](double t, double y) {
@@ -234,11 +244,12 @@ Extremes extremes_of_y(const std::vector<ResponseNode>& nodes) {
     for (Index i = 0; i < nodes.size(); ++i) {
         note(nodes[i].t, nodes[i].y);
         if (i == 0 || nodes[i].t <= nodes[i - 1].t) continue;
-        const UnitCubic y = cubic_of_y(nodes[i - 1], nodes[i]);
+        const ResponseNode &a = nodes[i - 1], &b = nodes[i];
+        if (controls_between(a, b, result.min, result.max)) continue;
+        const UnitCubic y = cubic_of_y(a, b);
         std::array<double, 2> turns{};
         const int n = y.turning_points(turns);
-        for (int k = 0; k < n; ++k)
-            note(nodes[i - 1].t + turns[Index(k)] * (nodes[i].t - nodes[i - 1].t), y.at(turns[Index(k)]));
+        for (int k = 0; k < n; ++k) note(a.t + turns[Index(k)] * (b.t - a.t), y.at(turns[Index(k)]));
     }
     return result;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/loop/sampled/sampled_loop.h"
 #include "engine/numerics/optimise/line_search.h"
 
 namespace tunewright::device {
@@ -80,10 +81,11 @@ GainLimiter::GainLimiter(const LinearPlant& plant, const Law& law)
     }
     omega_ = std::move(dense);
     for (const double omega : omega_) P_.push_back(P(omega));
+    G_.resize(P_.size());
 }
 
 std::vector<GainLimiter::Interval> GainLimiter::forbidden(const std::function<std::complex<double>(double)>& unit,
-                                                          const PeakLimits& limits) const {
+                                                          const PeakLimits& limits) {
     const auto at = [&](double omega) {
         const std::complex<double> C = unit(omega);
         return forbidden_at(P(omega) * C, C, limits);
@@ -92,7 +94,7 @@ std::vector<GainLimiter::Interval> GainLimiter::forbidden(const std::function<st
     std::vector<double> first(omega_.size()), last(omega_.size());
     std::optional<Forbidden> before;
     for (std::size_t i = 0; i < omega_.size(); ++i) {
-        const std::complex<double> C = unit(omega_[i]), G = P_[i] * C;
+        const std::complex<double> C = unit(omega_[i]), G = G_[i] = P_[i] * C;
         if (!std::isfinite(std::norm(G))) {
             first[i] = kInfinity;
             before.reset();
@@ -137,12 +139,23 @@ std::vector<GainLimiter::Interval> GainLimiter::forbidden(const std::function<st
     return joined;
 }
 
-std::optional<double> largest_gain(const std::vector<GainLimiter>& plants, const std::function<Law(double k)>& law_at,
+bool GainLimiter::is_stable(double gain, const Law& law) const {
+    if (!held_) return device::is_stable(*plant_, law);
+    LoopGrid along;
+    // The first loop's own grid: what it leaves open is followed with further points.
+    for (std::size_t i = 0; i < omega_.size(); i += 2) {
+        along.omega.push_back(omega_[i]);
+        along.point.push_back({gain * G_[i], 0, 0, 0});
+    }
+    return count_unstable_poles(SampledLoop(*held_, law), along).stable();
+}
+
+std::optional<double> largest_gain(std::vector<GainLimiter>& plants, const std::function<Law(double k)>& law_at,
                                    const PeakLimits& limits, double max) {
     const Law unit_law = law_at(1);
     const auto unit = [&](double omega) { return response_of(unit_law, omega); };
     std::vector<GainLimiter::Interval> all;
-    for (const GainLimiter& plant : plants) {
+    for (GainLimiter& plant : plants) {
         const auto some = plant.forbidden(unit, limits);
         all.insert(all.end(), some.begin(), some.end());
     }
@@ -155,9 +168,9 @@ std::optional<double> largest_gain(const std::vector<GainLimiter>& plants, const
     }
     for (auto gain = gains.rbegin(); gain != gains.rend(); ++gain) {
         const bool whole = *gain < max;
-        const Law law = law_at(whole ? kGapProbe * *gain : *gain);
-        const bool stable = std::all_of(plants.begin(), plants.end(),
-                                        [&](const GainLimiter& plant) { return is_stable(plant.plant(), law); });
+        const double probed = whole ? kGapProbe * *gain : *gain;
+        const bool stable = std::ranges::all_of(
+            plants, [&](const GainLimiter& plant) { return plant.is_stable(probed, law_at(probed)); });
         if (stable) return whole ? kGainInset * *gain : *gain;
     }
     return std::nullopt;

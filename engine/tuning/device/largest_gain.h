@@ -31,9 +31,11 @@ public:
         double omega = 0;  ///< frequency that determines `from`
     };
     std::vector<Interval> forbidden(const std::function<std::complex<double>(double)>& unit,
-                                    const PeakLimits& limits) const;
+                                    const PeakLimits& limits);
 
-    const LinearPlant& plant() const { return *plant_; }
+    /// Closed-loop stability with the controller of the last forbidden() at this gain, whose law this is: along the
+    /// frequencies of this object if it is sampled.
+    bool is_stable(double gain, const Law& law) const;
 
 private:
     std::complex<double> P(double omega) const { return held_ ? held_->at(omega) : plant_->at({0, omega}); }
@@ -41,12 +43,12 @@ private:
     const LinearPlant* plant_;
     std::optional<HeldPlant> held_;  // behind the controller's hold
     std::vector<double> omega_;
-    std::vector<std::complex<double>> P_;
+    std::vector<std::complex<double>> P_, G_;  // G_: of the last forbidden(), at gain 1
 };
 
 /// The result for all plants together, at most `max`. `law_at(k)`: the controller at gain k. Empty: no gain is stable
 /// and within the limits.
-std::optional<double> largest_gain(const std::vector<GainLimiter>& plants, const std::function<Law(double k)>& law_at,
+std::optional<double> largest_gain(std::vector<GainLimiter>& plants, const std::function<Law(double k)>& law_at,
                                    const PeakLimits& limits, double max = std::numeric_limits<double>::infinity());
 
 }  // namespace tunewright::device

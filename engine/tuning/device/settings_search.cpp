@@ -7,6 +7,7 @@
 #include "engine/number_text.h"
 #include "engine/numerics/optimise/direct_search.h"
 #include "engine/numerics/optimise/line_search.h"
+#include "engine/plant/linear/resonance.h"
 #include "engine/tuning/device/largest_gain.h"
 
 namespace tunewright::device {
@@ -64,13 +65,13 @@ public:
     Settings at(double Ti, double Td, double enough = kInfinity);
     /// The factor of M - 1 by which the limits must be widened for some gain to keep them; infinite if no widening
     /// helps. It guides a search from times without a feasible gain to times with one.
-    double widening(double Ti, double Td) const;
+    double widening(double Ti, double Td);
     /// With a gain that is confirmed on the whole loop, on its own grid.
     Settings confirmed(double Ti, double Td);
 
 private:
     Law law(double gain, double Ti, double Td) const { return shape_.law(gain, Ti, Td); }
-    Settings with_limits(double Ti, double Td, const PeakLimits& limits, double enough = kInfinity) const;
+    Settings with_limits(double Ti, double Td, const PeakLimits& limits, double enough = kInfinity);
     double cost(double gain, double Ti, double Td) const { return load_iae_of(*plants_.front(), law(gain, Ti, Td)); }
 
     const std::vector<const LinearPlant*>& plants_;
@@ -80,7 +81,7 @@ private:
     std::vector<GainLimiter> limiters_;
 };
 
-Settings Search::with_limits(double Ti, double Td, const PeakLimits& limits, double enough) const {
+Settings Search::with_limits(double Ti, double Td, const PeakLimits& limits, double enough) {
     Settings best{0, Ti, Td, kInfinity};
     const auto k = largest_gain(
         limiters_, [&](double gain) { return law(gain, Ti, Td); }, limits, shape_.gain.high);
@@ -89,7 +90,10 @@ Settings Search::with_limits(double Ti, double Td, const PeakLimits& limits, dou
     if (!(1 / std::abs(law(max, Ti, Td).gains.Ki) <= enough)) return best;
     best = {shape_.sign * max, Ti, Td, cost(max, Ti, Td)};
     for (const double share : kLowerGains) {
-        const double gain = std::max(share * max, shape_.gain.low), lower = cost(gain, Ti, Td);
+        const double gain = std::max(share * max, shape_.gain.low);
+        // |integral of e| = 1/Ki is a lower bound of the IAE: an error that keeps its sign needs no simulation here.
+        if (1 / std::abs(law(gain, Ti, Td).gains.Ki) >= best.load_IAE) break;
+        const double lower = cost(gain, Ti, Td);
         if (!(lower < best.load_IAE)) break;
         best = {shape_.sign * gain, Ti, Td, lower};
     }
@@ -100,7 +104,7 @@ Settings Search::at(double Ti, double Td, double enough) {
     return with_limits(shape_.Ti.within(Ti), shape_.Td.within(Td), inner_, enough);
 }
 
-double Search::widening(double Ti, double Td) const {
+double Search::widening(double Ti, double Td) {
     const auto serves = [&](double factor) {
         const PeakLimits wider{1 + factor * (inner_.Ms - 1), 1 + factor * (inner_.Mt - 1), {}};
         const auto k = largest_gain(
@@ -180,7 +184,9 @@ double TimesSearch::descend(Reach reach, const std::stop_token& stop) {
     };
     double reached = cost(x_), step = wide ? kFirstStep : kLaterStep;
     for (int i = 0; i < (wide ? kMaxRestarts : 1) && !x_.empty(); ++i, step = kLaterStep) {
-        const LocalOptions options{std::vector<double>(x_.size(), step), wide ? kTolerance : kNearTolerance,
+        // A restart shows whether the first simplex has collapsed: a rough one is enough for that.
+        const bool fine = wide && i == 0;
+        const LocalOptions options{std::vector<double>(x_.size(), step), fine ? kTolerance : kNearTolerance,
                                    wide ? kMaxEvaluations : kMaxEvaluationsNear};
         const auto found = find_local_minimum(LocalSearch::nelder_mead, watched, x_, options);
         const double gained = reached - found.value;
@@ -205,7 +211,7 @@ Settings TimesSearch::best(Reach reach, const std::stop_token& stop) {
     return found;
 }
 
-/// The local minima on a grid around the start, the best first.
+/// The local minima on a grid around the start, the best first; without that at the start, which is searched anyway.
 std::vector<Settings> valleys(Search& local, const Shape& shape, const Settings& start, const std::stop_token& stop) {
     const int rows = shape.has_integral ? kNetBelow + 1 + kNetAbove : 1,
               columns = shape.has_derivative ? kNetBelow + 1 + kNetAbove : 1;
@@ -228,7 +234,8 @@ std::vector<Settings> valleys(Search& local, const Shape& shape, const Settings&
     std::vector<Settings> found;
     for (int i = 0; i < rows; ++i)
         for (int j = 0; j < columns; ++j) {
-            bool lowest = std::isfinite(cost(i, j));
+            const bool at_start = (i == kNetBelow || rows == 1) && (j == kNetBelow || columns == 1);
+            bool lowest = !at_start && std::isfinite(cost(i, j));
             for (int a = -1; a <= 1; ++a)
                 for (int b = -1; b <= 1; ++b) lowest = lowest && cost(i, j) <= cost(i + a, j + b);
             if (lowest) found.push_back(net[static_cast<std::size_t>(i * columns + j)]);
@@ -252,7 +259,7 @@ Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const S
             if (std::isfinite(found.load_IAE) && (!best || found.load_IAE < best->load_IAE)) best = found;
         };
         take(TimesSearch(local, shape, start).best(reach, control.stop));
-        if (reach == Reach::wide) {
+        if (reach == Reach::wide && std::ranges::any_of(plants, [](const auto* plant) { return is_resonant(*plant); })) {
             std::optional<Settings> other;
             for (const Settings& valley : valleys(local, shape, start, control.stop)) {
                 local.keep_margin(kMargins[0]);

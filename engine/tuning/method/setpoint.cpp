@@ -34,8 +34,8 @@ double down(double b) { return std::floor(b * kWeightStepsPerUnit) / kWeightStep
 bool same_digits(double a, double b) { return down(a) == down(b); }
 
 /// The shortest filter that keeps the limit; empty: none of the tried ones does. `near`: where the search starts.
-std::optional<double> shortest_filter(const SetpointResponses::Filtered& response, double limit, double near) {
-    const auto beyond = [&](double T) { return response.overshoot(T) - limit; };
+std::optional<double> shortest_filter(const SetpointResponses::Filtered& response, double near) {
+    const auto beyond = [&](double T) { return response.excess(T); };
     double T = near, here = beyond(T);
     for (int i = 0; here <= 0; ++i) {
         if (i == kShortestFilter) return T;
@@ -69,8 +69,8 @@ struct WeightAndFilter {
 std::optional<WeightAndFilter> best_pair(const SetpointResponses& responses, double limit, double calmest) {
     double near = responses.time();
     const auto with = [&](double b) {
-        const auto response = responses.with(b);
-        const auto T = shortest_filter(response, limit, near);
+        const auto response = responses.with(b, limit);
+        const auto T = shortest_filter(response, near);
         if (!T) return WeightAndFilter{b};
         near = *T;
         return WeightAndFilter{b, *T, response.IAE(*T)};
@@ -247,7 +247,7 @@ std::optional<SetpointCure> cure_overshoot(const LinearPlant& plant, double max_
         const double b = best_weight(*responses, limit, 0);
         if (b < pid.b) return SetpointCure{b, 0};
     }
-    const auto T = shortest_filter(responses->with(pid.b), limit, responses->time());
+    const auto T = shortest_filter(responses->with(pid.b, limit), responses->time());
     return T ? std::optional(SetpointCure{pid.b, *T}) : std::nullopt;
 }
 

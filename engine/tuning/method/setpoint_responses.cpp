@@ -78,32 +78,60 @@ std::vector<ResponseNode> SetpointResponses::weighted(double b) const {
     return nodes;
 }
 
-double SetpointResponses::Filtered::IAE(double T) const {
-    const auto integral = error_integral_ ? std::optional(*error_integral_ + T) : std::nullopt;
-    return integral_of_absolute_error(behind(T), 1, integral);
-}
-
-std::vector<ResponseNode> SetpointResponses::Filtered::behind(double T) const {
-    std::vector<ResponseNode> nodes = nodes_;
-    double z = 0;
-    nodes.front().y = nodes.front().y_slope = 0;
-    for (std::size_t i = 1; i < nodes.size(); ++i) {
+SetpointResponses::Filtered::Filtered(std::vector<ResponseNode> nodes, std::optional<double> error_integral,
+                                      double limit)
+    : nodes_(std::move(nodes)), error_integral_(error_integral), limit_(limit) {
+    const double level = 1 + limit / 100;
+    pieces_.reserve(nodes_.size());
+    for (std::size_t i = 1; i < nodes_.size(); ++i) {
         const ResponseNode &a = nodes_[i - 1], &b = nodes_[i];
         const double h = b.t - a.t;
-        if (!jumps_after(nodes_, i - 1)) {
-            const double slope = (b.y - a.y) / h;
-            const double curve = (3 * slope - 2 * a.y_slope - b.y_slope) / h,
-                         twist = (a.y_slope + b.y_slope - 2 * slope) / (h * h);
+        if (std::max(a.y, b.y) > level || std::max(a.y + h * a.y_slope / 3, b.y - h * b.y_slope / 3) > level)
+            exceeding_ = i + 1;
+        if (jumps_after(nodes_, i - 1)) {
+            pieces_.push_back({});
+            continue;
+        }
+        const double slope = (b.y - a.y) / h;
+        pieces_.push_back({h, a.y, a.y_slope, (3 * slope - 2 * a.y_slope - b.y_slope) / h,
+                           (a.y_slope + b.y_slope - 2 * slope) / (h * h)});
+    }
+}
+
+double SetpointResponses::Filtered::excess(double T) const {
+    // The response without filter keeps the limit.
+    if (exceeding_ == 0) return -limit_;
+    return percent_above(behind(T, exceeding_)) - limit_;
+}
+
+double SetpointResponses::Filtered::IAE(double T) const {
+    const auto integral = error_integral_ ? std::optional(*error_integral_ + T) : std::nullopt;
+    return integral_of_absolute_error(behind(T, nodes_.size()), 1, integral);
+}
+
+std::vector<ResponseNode> SetpointResponses::Filtered::behind(double T, std::size_t count) const {
+    std::vector<ResponseNode> nodes(nodes_.begin(), nodes_.begin() + static_cast<std::ptrdiff_t>(count));
+    double z = 0, decay_h = 0, decay = 1;
+    nodes.front().y = nodes.front().y_slope = 0;
+    for (std::size_t i = 1; i < count; ++i) {
+        const Piece& piece = pieces_[i - 1];
+        if (const double h = piece.h; h > 0) {
+            // Successive steps are equal but for the rounding of their times.
+            if (std::abs(h - decay_h) > kSameInstant * nodes_[i].t) {
+                decay_h = h;
+                decay = std::exp(-h / T);
+            }
             const auto particular = [&](double s) {
-                const double p = a.y + s * (a.y_slope + s * (curve + s * twist)),
-                             p1 = a.y_slope + s * (2 * curve + s * 3 * twist), p2 = 2 * curve + s * 6 * twist;
-                return p - T * (p1 - T * (p2 - T * 6 * twist));
+                const double p = piece.y + s * (piece.slope + s * (piece.curve + s * piece.twist)),
+                             p1 = piece.slope + s * (2 * piece.curve + s * 3 * piece.twist),
+                             p2 = 2 * piece.curve + s * 6 * piece.twist;
+                return p - T * (p1 - T * (p2 - T * 6 * piece.twist));
             };
-            z = particular(h) + (z - particular(0)) * std::exp(-h / T);
+            z = particular(h) + (z - particular(0)) * decay;
         }
         nodes[i].y = z;
-        nodes[i].y_slope = (b.y - z) / T;
-        nodes[i].error_integral = b.error_integral + T * z;
+        nodes[i].y_slope = (nodes_[i].y - z) / T;
+        nodes[i].error_integral = nodes_[i].error_integral + T * z;
     }
     return nodes;
 }

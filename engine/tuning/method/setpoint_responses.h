@@ -25,24 +25,32 @@ public:
     double overshoot(double b) const { return percent_above(weighted(b)); }
     double IAE(double b) const;
 
-    /// For one b, with filters of any T > 0.
+    /// For one b and one limit on the overshoot (percent), with filters of any T > 0.
     class Filtered {
     public:
-        double overshoot(double T) const { return percent_above(behind(T)); }
+        /// The largest y above the limit, in percent, among the times up to the last at which the unfiltered y exceeds
+        /// it. From there on the filtered y falls or stays below the limit, so it keeps the limit if this is <= 0.
+        double excess(double T) const;
         double IAE(double T) const;
 
     private:
         friend class SetpointResponses;
-        Filtered(std::vector<ResponseNode> nodes, std::optional<double> error_integral)
-            : nodes_(std::move(nodes)), error_integral_(error_integral) {}
-        /// T z' = y - z, exact for the cubic y between nodes: z = p - T p' + T^2 p'' - T^3 p''' plus an exponential.
-        /// The integral of the error is that of 1 - y plus T z.
-        std::vector<ResponseNode> behind(double T) const;
+        /// y between two nodes: y + slope s + curve s^2 + twist s^3 over s in [0, h].
+        struct Piece {
+            double h, y, slope, curve, twist;
+        };
+        Filtered(std::vector<ResponseNode> nodes, std::optional<double> error_integral, double limit);
+        /// T z' = y - z up to node `count`, exact for the cubic y between nodes: z = p - T p' + T^2 p'' - T^3 p''' plus
+        /// an exponential. The integral of the error is that of 1 - y plus T z.
+        std::vector<ResponseNode> behind(double T, std::size_t count) const;
 
         std::vector<ResponseNode> nodes_;
+        std::vector<Piece> pieces_;  ///< that which ends with node i + 1; h = 0: a jump
         std::optional<double> error_integral_;
+        double limit_;
+        std::size_t exceeding_ = 0;  ///< nodes up to the end of the last piece that may exceed the limit
     };
-    Filtered with(double b) const { return {weighted(b), error_integral(b)}; }
+    Filtered with(double b, double limit) const { return {weighted(b), error_integral(b), limit}; }
 
     /// The size of the integral of the error with b = 0: a characteristic time of the loop.
     double time() const;

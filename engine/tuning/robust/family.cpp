@@ -22,7 +22,7 @@ Error both_signs() {
 Expected<std::vector<LinearPlant>> other_members(const TuningProblem& tuning, double (*sign_of)(const LinearPlant&)) {
     std::vector<LinearPlant> members;
     if (!tuning.family) return members;
-    for (const auto& member : members_beside_nominal(*tuning.family)) {
+    for (const auto& member : members_without_nominal(*tuning.family)) {
         auto linear = LinearPlant::make(member);
         if (!linear) return linear.error();
         if (sign_of(*linear) != sign_of(tuning.linear)) return both_signs();

@@ -1,3 +1,4 @@
+#include "engine/plant/linear/resonance.h"
 #include "engine/tuning/robust/pareto_front.h"
 
 #include <algorithm>

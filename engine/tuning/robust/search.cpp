@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/numerics/optimise/direct_search.h"
+#include "engine/plant/linear/resonance.h"
 #include "engine/tuning/limits.h"
 #include "engine/tuning/robust/starts.h"
 
@@ -19,7 +20,6 @@ namespace {
 /// hundred) for every objective; `bench/robust_batch` measures the time. To tune a constant: change it, run both, and
 /// keep the change if the worst plant improves or the median is faster, and no plant is lost.
 struct FastSearchConstants {
-    double resonant_damping = 0.4;     ///< damping of a pair of poles below which a plant may have several local minima
     double slow_zero = 0.3;            ///< multiple of the reference: a filter below such a zero may give another local
                                        ///< minimum
     double short_Td = 0.1;             ///< multiple of 1/reference: below it the cost hardly depends on ln Td
@@ -250,12 +250,6 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& probl
 }
 
 }  // namespace
-
-bool is_resonant(const LinearPlant& plant) {
-    return std::ranges::any_of(plant.poles(), [](std::complex<double> pole) {
-        return pole.imag() > 0 && std::abs(pole.real()) < k.resonant_damping * std::abs(pole);
-    });
-}
 
 std::optional<DesignResult> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report) {
     std::vector<ScanPoint> points;

@@ -29,9 +29,6 @@ namespace tunewright::robust {
 /// cost, from further starts if there may be several local minima. Empty: no feasible controller was found.
 std::optional<DesignResult> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report);
 
-/// True if a pair of poles is damped so little that there may be several local minima.
-bool is_resonant(const LinearPlant& plant);
-
 /// Nelder-Mead from a simplex with corners (Ti, Td), (0.4 Ti, Td), (Ti, 0.4 Td) (Garpinger and Hägglund 2008,
 /// section 4.2).
 std::optional<DesignResult> nelder_mead_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,

@@ -33,9 +33,9 @@ struct DesignSqpConstants {
     double max_less_gain = 0.3;           ///< of ln Kp
     double max_restored_radii = 4;        ///< a restoration that moves further gives another design
     int small_steps_to_end = 2;           ///< successive steps, each within the tolerance of the cost
-    double max_of_promise = 5;            ///< a run rarely gains more than this multiple of the decrease that the model
+    double max_gain_over_predicted = 5;   ///< a run rarely gains more than this multiple of the decrease that the model
                                           ///< predicts
-    double telling_step = 1e-3;           ///< the curvature after shorter steps is not passed on
+    double min_curvature_step = 1e-3;     ///< the curvature after shorter steps is not passed on
     double same_peak = 0.3;               ///< in ln omega: a peak that moves further counts as another one
     double min_radius = 1e-5, max_radius = 1;
     double hopeless_radius = 4;  ///< beyond it the linear models have no common solution
@@ -142,7 +142,7 @@ public:
     };
     struct Step {
         Vector p;
-        double promised = 0;  // of ln(cost)
+        double predicted = 0;  // of ln(cost)
         SmallProgram::Bounds multipliers;
     };
     static constexpr bool kElastic = false;
@@ -189,7 +189,8 @@ public:
     double length(const Step& step) const { return longest(step.p); }
 
     bool worth_trying(const State& here, const Step& step, double radius) const {
-        return !(longest(step.p) < radius && here.cost.value - k.max_of_promise * step.promised > options_.wanted);
+        return !(longest(step.p) < radius &&
+                 here.cost.value - k.max_gain_over_predicted * step.predicted > options_.wanted);
     }
 
     /// Restores feasibility before the cost is computed: a sweep costs a tenth of a simulation.
@@ -228,7 +229,7 @@ public:
         const Vector moved_by = difference(here.x, before.x, n_);
         optimise::update_curvature(H_, moved_by, y);
         // After a tiny step, the change of the gradients is mainly rounding.
-        if (!(longest(moved_by) > k.telling_step)) return;
+        if (!(longest(moved_by) > k.min_curvature_step)) return;
         // A parameter that this search does not vary gets the first curvature: a later search needs a positive one.
         Curvature& seen = result_.curvature.emplace();
         for (std::size_t i = 0; i < seen.size(); ++i) seen[i][i] = optimise::kSqp.first_curvature;

@@ -1,3 +1,4 @@
+#include "engine/plant/linear/resonance.h"
 #include "engine/tuning/robust/verified_search.h"
 
 #include <algorithm>

@@ -6,7 +6,8 @@
 namespace tunewright::server {
 namespace {
 
-constexpr double kShortJobSeconds = 0.020;  // seconds; also the amount of work that is claimed ahead for one worker
+constexpr double kShortJobSeconds = 0.020;
+constexpr double kWorkAheadSeconds = 0.050;  // of work that is claimed ahead for one worker
 constexpr std::size_t kMaxAhead = 16;
 // One claim in kLowShare takes a job of low priority first, so that batches progress however many single jobs arrive.
 constexpr std::uint64_t kLowShare = 8;
@@ -83,7 +84,7 @@ bool Claims::urgent() const { return !ready_.empty() && !ready_.front()->goes_fi
 
 std::size_t Claims::ahead() const {
     if (!more_ || HeldJob::Clock::now() > last_take_ + kMaxTimeSinceTake) return 0;
-    return std::min({kMaxAhead, streak_, static_cast<std::size_t>(kShortJobSeconds / std::max(pace_, 1e-4))});
+    return std::min({kMaxAhead, streak_, static_cast<std::size_t>(kWorkAheadSeconds / std::max(pace_, 1e-4))});
 }
 
 std::size_t Claims::wanted() const {

@@ -137,7 +137,7 @@ bool cancel_waiting(Session& session, std::int64_t seq, UnixMs now) {
         "WITH taken AS (DELETE FROM waiting w USING jobs j WHERE j.seq = $1 AND w.class IN (j.class, 2) AND "
         "w.turn = j.turn AND w.seq = j.seq RETURNING w.seq, w.batch, w.attempts), "
         "gone AS (INSERT INTO ended (seq, single, status, attempts, cancel_requested, finished_at) "
-        "SELECT seq, batch IS NULL, 'cancelled', attempts, true, $2 FROM taken RETURNING seq), told AS (" +
+        "SELECT seq, batch IS NULL, 'cancelled', attempts, true, $2 FROM taken RETURNING seq), counted AS (" +
         insert_deliveries("gone", "$2") + ") SELECT seq FROM taken";
     return !session.run(sql, Values().number(seq).number(now)).empty();
 }
@@ -152,7 +152,7 @@ bool has_failed(Session& session, std::int64_t seq) {
                 .empty();
 }
 
-constexpr int kLooks = 20;  // attempts for a job that others move meanwhile
+constexpr int kMaxCancelTries = 20;  // attempts for a job that others move meanwhile
 
 }  // namespace
 
@@ -271,7 +271,7 @@ CancelEffect cancel_job(Session& session, const std::string& id, UnixMs now) {
     const std::optional<FoundJob> found = find_job(session, id);
     if (!found) return CancelEffect::none;
     // Other processes may move it between two attempts: from waiting to running and back.
-    for (int look = 0; look < kLooks; look++) {
+    for (int tries = 0; tries < kMaxCancelTries; tries++) {
         if (cancel_waiting(session, found->seq, now)) {
             BatchCounts counts;
             counts.move(found->batch, JobStatus::queued, JobStatus::cancelled, 1, now);

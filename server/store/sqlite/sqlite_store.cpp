@@ -95,7 +95,7 @@ public:
     void finish(JobEnd end, Done<bool> done) override {
         const std::size_t bytes = end.result.size() + end.error.size();
         write<bool>(
-            kDurable, [end = std::move(end)](Connection& store) { return finish_job(store, end); }, std::move(done),
+            end.first ? kDurable : kGathered, [end = std::move(end)](Connection& store) { return finish_job(store, end); }, std::move(done),
             bytes);
     }
     void release(std::int64_t seq, int attempts, Done<bool> done) override {
@@ -190,8 +190,9 @@ public:
     }
 
 private:
-    /// kIdle is a kBulky change that does not wait for the disk: after a power failure it is made again.
-    enum Manner { kDurable, kQuick, kBulky, kIdle };
+    /// kGathered is a kDurable change that nobody waits for. kIdle is a kBulky change that does not wait for the disk:
+    /// after a power failure it is made again.
+    enum Manner { kDurable, kGathered, kQuick, kBulky, kIdle };
     using Kind = SqliteWriter::Change::Kind;
 
     /// Queues `work`, which stores texts of this length, for the writer and passes its value on after the commit.
@@ -203,7 +204,8 @@ private:
         change.done = [value, done = std::move(done)](const std::optional<StoreFault>& fault) {
             fault ? done(*fault) : done(std::move(*value));
         };
-        change.durable = manner == kDurable || manner == kBulky;
+        change.durable = manner == kDurable || manner == kGathered || manner == kBulky;
+        change.patient = manner == kGathered;
         change.bulky = manner == kBulky || manner == kIdle;
         change.bytes = bytes;
         change.kind = kind;
@@ -244,7 +246,7 @@ private:
     Pool<Connection> readers_{kReaders};
     std::unique_ptr<SqliteWriter> writer_;
     Slices<Connection> slices_{[this](std::function<void(Connection&)> apply, Slices<Connection>::Finished done) {
-        writer_->submit({std::move(apply), std::move(done), true, true, 0, Kind::gives_room});
+        writer_->submit({std::move(apply), std::move(done), true, true, false, 0, Kind::gives_room});
     }};
 };
 

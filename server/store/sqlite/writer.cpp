@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <iterator>
 #include <new>
 #include <string>
 #include <utility>
@@ -19,6 +20,8 @@ namespace {
 
 /// Limits the time for which one transaction delays others, and the size of its log.
 constexpr std::size_t kMaxGroup = 256;
+constexpr std::size_t kSet = 32;  // patient changes that are enough for a transaction
+constexpr std::chrono::milliseconds kPatience{20};
 constexpr std::chrono::milliseconds kProbePause{500};
 constexpr std::chrono::seconds kMinQuietTime{30};
 constexpr std::chrono::milliseconds kShortWait{20};
@@ -66,17 +69,42 @@ void SqliteWriter::stop() {
 }
 
 void SqliteWriter::submit(Change change) {
+    bool news = true;
     {
         const std::lock_guard lock(mutex_);
-        (change.bulky ? bulky_ : change.durable ? waiting_ : quick_).push_back(std::move(change));
+        if (change.patient) {
+            if (patient_.empty()) patient_since_ = std::chrono::steady_clock::now();
+            patient_.push_back(std::move(change));
+            news = patient_.size() == 1 || patient_.size() >= kSet;
+        } else {
+            (change.bulky ? bulky_ : change.durable ? waiting_ : quick_).push_back(std::move(change));
+        }
     }
-    changed_.notify_one();
+    if (news) changed_.notify_one();
+}
+
+/// Returns with something to write, at the time for a probe, or to stop. Patient changes go with the first durable ones,
+/// or after a while.
+void SqliteWriter::await_changes(std::unique_lock<std::mutex>& lock) {
+    const auto probe_at =
+        std::chrono::steady_clock::now() + (healthy_ ? std::chrono::milliseconds(kFilePollInterval) : kProbePause);
+    const auto due = [this] { return patient_.empty() ? std::chrono::steady_clock::time_point::max() : patient_since_ + kPatience; };
+    const auto ripe = [&] {
+        return !patient_.empty() && (stopping_ || !waiting_.empty() || patient_.size() >= kSet ||
+                                     std::chrono::steady_clock::now() >= due());
+    };
+    while (!(stopping_ || !quick_.empty() || !waiting_.empty() || !bulky_.empty() || ripe()))
+        if (changed_.wait_until(lock, std::min(probe_at, due())) == std::cv_status::timeout &&
+            std::chrono::steady_clock::now() >= probe_at)
+            break;
+    if (!ripe()) return;
+    std::ranges::move(patient_, std::back_inserter(waiting_));
+    patient_.clear();
 }
 
 void SqliteWriter::next_group(std::vector<Change>& group) {
     std::unique_lock lock(mutex_);
-    const auto ready = [this] { return stopping_ || !quick_.empty() || !waiting_.empty() || !bulky_.empty(); };
-    changed_.wait_for(lock, healthy_ ? std::chrono::milliseconds(kFilePollInterval) : kProbePause, ready);
+    await_changes(lock);
     // Changes that need not wait for the disk go first and separately: a claim in a group with others would keep a
     // worker waiting for their results. Every second group is theirs.
     std::deque<Change>& first = !quick_.empty() && !std::exchange(quick_went_, true) ? quick_ : waiting_;

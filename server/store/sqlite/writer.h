@@ -1,7 +1,8 @@
 // The one thread that writes to the database. Changes that arrive while a transaction is being made durable are
 // combined in the next one: one wait for the disk for many changes. Bulky changes (of a batch) have a queue of their
 // own: each transaction takes one of them, so that they never delay the others for long. Changes that need not wait for
-// the disk have another queue: they run between two waits.
+// the disk have another queue: they run between two waits. Changes for which nobody waits gather for some milliseconds,
+// because a transaction costs as much as several of them.
 #pragma once
 
 #include <atomic>
@@ -35,6 +36,8 @@ public:
         bool durable = true;
         /// Changes many rows. Bulky changes keep their order among themselves, as do durable ones, and the others.
         bool bulky = false;
+        /// Nobody waits for it: it may gather with others before it is written.
+        bool patient = false;
         /// Length of the texts that it stores.
         std::size_t bytes = 0;
         /// A new job also needs space for its result, so it is refused while the disk has little left; a change that
@@ -62,6 +65,7 @@ private:
     bool stopping();
     /// Empty when it is time to stop or to probe.
     void next_group(std::vector<Change>& group);
+    void await_changes(std::unique_lock<std::mutex>& lock);
     void write_group(std::vector<Change>& group);
     std::optional<StoreFault> try_commit(std::vector<Change>& group, std::size_t first, std::size_t count);
     std::optional<StoreFault> commit_where_room(std::vector<Change>& group, std::size_t first, std::size_t count);
@@ -81,6 +85,8 @@ private:
     std::deque<Change> quick_;  ///< not durable, not bulky
     std::deque<Change> waiting_;
     std::deque<Change> bulky_;
+    std::deque<Change> patient_;  ///< durable, not yet among the waiting ones
+    std::chrono::steady_clock::time_point patient_since_;  ///< arrival of the first of them
     bool quick_went_ = false;  ///< the last group consisted of quick changes
     bool stopping_ = false;
     std::atomic<bool> healthy_ = true;

@@ -64,6 +64,68 @@ TEST(OwnStep, FollowsTheSaturatedPlantInClosedForm) {
     EXPECT_GT(compared, 20);
 }
 
+// Rounding keeps the loop moving: it is run for as long as it would need without, and its figures are close to those.
+TEST(OwnStep, OfARoundedProgramEnds) {
+    Json request = heater_request(heater_step());
+    request["implement"] = {{"sample_time", 1}};
+    const Json exact = own_step_of(request);
+    for (const char* rounded : {"u_resolution", "y_resolution", "dead_band"}) {
+        request["implement"] = {{"sample_time", 1}, {rounded, 0.05}};
+        const Json own = own_step_of(request);
+        EXPECT_LT(own["trace"]["t"].back().get<double>(), 2000) << rounded;
+        EXPECT_TRUE(own["settles"].get<bool>()) << rounded;
+        EXPECT_NEAR(own["y_final"].get<double>(), 120, 0.5) << rounded;
+        ASSERT_TRUE(own["setpoint"]["IAE"].is_number()) << rounded << own["setpoint"];
+        EXPECT_NEAR(own["setpoint"]["IAE"].get<double>(), exact["setpoint"]["IAE"].get<double>(),
+                    0.02 * exact["setpoint"]["IAE"].get<double>())
+            << rounded;
+    }
+}
+
+// What was not simulated has no figures.
+TEST(OwnStep, ALoadBeyondTheSimulatedTimeHasNoFigures) {
+    Json step = heater_step();
+    step["hold"] = 36000;
+    step["load"] = {{"size", -10}};
+    Json request = heater_request(step);
+    request["implement"] = {{"sample_time", 0.01}};
+    const Json entry = own_answer_to(request)["controllers"][0], own = entry["own_step"];
+    for (const char* figure : {"IAE", "peak", "recovery_time"}) EXPECT_TRUE(own["load"][figure].is_null()) << own["load"];
+    EXPECT_TRUE(own["setpoint"]["IAE"].is_null());
+    EXPECT_FALSE(own["settles"].get<bool>());
+    EXPECT_EQ(entry["verdict"].dump().find("The load moves y"), std::string::npos);
+}
+
+TEST(OwnStep, AGivenLengthRestsWhereItIsLongEnough) {
+    Json step = heater_step();
+    for (const auto& [length, rests] : {std::pair{5.0, false}, {60.0, false}, {5000.0, true}}) {
+        step["length"] = length;
+        const Json own = own_step_of(heater_request(step));
+        EXPECT_EQ(own["settles"].get<bool>(), rests) << length;
+        EXPECT_EQ(own["y_final"].is_number(), rests) << length;
+        EXPECT_TRUE(own["setpoint"]["IAE"].is_number()) << length;
+        EXPECT_NEAR(own["trace"]["t"].back().get<double>(), length, 1e-9);
+    }
+}
+
+// An integrating tank whose outflow exceeds what the pump can give: y falls for ever, which no controller changes.
+TEST(OwnStep, OutOfReachOfAnIntegratingPlantIsBad) {
+    Json request = {{"plant", {{"type", "ipdt"}, {"K", 0.02}, {"L", 5}}},
+                    {"controllers", Json::array({Json{{"form", "ideal"}, {"Kp", 3}, {"Ti", 60}}})},
+                    {"evaluate",
+                     {{"points", 0},
+                      {"own_step",
+                       {{"y", 50}, {"u", 40}, {"target", 60}, {"u_min", 0}, {"u_max", 100}, {"load", {{"size", -90}}}}}}}};
+    const Json findings = own_answer_to(request)["controllers"][0]["verdict"];
+    bool found = false;
+    for (const Json& finding : findings)
+        if (finding["code"] == "own-step-out-of-reach") {
+            found = true;
+            EXPECT_EQ(finding["level"], "bad");
+        }
+    EXPECT_TRUE(found) << findings.dump(1);
+}
+
 // The limits matter only where u reaches them: a step within them has the figures of the unit step, in proportion.
 TEST(OwnStep, HasTheFiguresOfTheUnitStepWhereNothingSaturates) {
     Json request = heater_request({{"y", 20}, {"u", 10}, {"target", 30}, {"u_min", -1000}, {"u_max", 1000}});

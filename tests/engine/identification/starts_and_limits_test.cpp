@@ -177,13 +177,13 @@ TEST(Records, ALoadFarBeyondWhatUDidIsNoExplanation) {
 /// A relay of +-1 that samples y = 2 e^(-5s)/(20s + 1) every half second, from rest, recorded every `rows` seconds.
 Record coarse_relay_record(double hysteresis, double rows) {
     constexpr double kLook = 0.5;
-    constexpr int kDelay = 10, kLooks = 1000, kStart = 60;
+    constexpr int kDelay = 10, kMaxCancelTries = 1000, kStart = 60;
     const double decay = std::exp(-kLook / 20);
-    std::vector<double> u(kLooks, 0.0);
+    std::vector<double> u(kMaxCancelTries, 0.0);
     Record record;
     double y = 0, level = 1;
     const int every = static_cast<int>(std::lround(rows / kLook));
-    for (int k = 0; k < kLooks; ++k) {
+    for (int k = 0; k < kMaxCancelTries; ++k) {
         if (k >= kStart) {
             if (y > hysteresis) level = -1;
             if (y < -hysteresis) level = 1;

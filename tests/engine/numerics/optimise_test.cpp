@@ -140,7 +140,7 @@ struct Disc {
     };
     struct Step {
         SmallProgram::Vector p;
-        double promised = 0, multiplier = 0;
+        double predicted = 0, multiplier = 0;
     };
     static constexpr bool kElastic = false;
     SmallProgram::Matrix H = SmallProgram::Matrix::Identity(2, 2);

@@ -2,7 +2,7 @@
 // values can be typed in their place.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { openDesign, PLANT, setting, shows } from "../design_page.mjs";
+import { openDesign, PLANT, setting, shows, slider } from "../design_page.mjs";
 import { accessibilityViolations, browserTests, overflow } from "../harness.mjs";
 import { germanTrend, heaterLog } from "../made_records.mjs";
 import { chooseProduct, person } from "../person.mjs";
@@ -26,6 +26,16 @@ async function openLoop(page, request = LOOP) {
   await page.goto(`${tests.service.base}/#/jobs/${id}/design`);
   await page.locator("table.typed tbody tr").first().waitFor();
   return { id, entry: result.controllers[result.proposed ?? 0] };
+}
+
+/** Gives the chosen product its ranges: y from 0 to 200, u from 0 to 100. */
+async function giveRanges(page) {
+  for (const [group, ends] of [["Measurement range", ["0", "200"]], ["Output range", ["0", "100"]]])
+    for (const [index, end] of ["from", "to"].entries()) {
+      const field = page.getByRole("group", { name: new RegExp(`^${group}`) }).getByRole("textbox", { name: end });
+      await field.fill(ends[index]);
+      await field.press("Tab");
+    }
 }
 
 /** Label, today's value, new value and unit of each row. */
@@ -88,6 +98,107 @@ test("other values typed in the product's rows are shown with their verdict, mar
     await page.getByRole("button", { name: "Undo" }).click();
     await page.getByText("robust", { exact: true }).first().waitFor();
     await page.waitForURL(/design(\?entry=\d)?$/);
+  });
+});
+
+/** Answers to these calls wait until `release`. */
+async function hold(page, address) {
+  let release;
+  const released = new Promise((go) => (release = go));
+  await page.route(address, async (route) => {
+    await released;
+    await route.continue();
+  });
+  return release;
+}
+
+test("a text that is being typed stays when the answer to the one before arrives", async () => {
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    await openLoop(page);
+    const release = await hold(page, "**/v1/controllers/*/controller");
+    await page.getByRole("button", { name: "Type other values" }).click();
+    const [gain, reset] = ["GAIN", "RESET"].map((name) => page.getByRole("textbox", { name: `${name}, new` }));
+    await gain.fill("1.3");
+    await gain.press("Tab");
+    await reset.fill("7.5");
+    release();
+    await page.getByText("robust, set by hand", { exact: true }).waitFor();
+    await settled();
+    assert.equal(await reset.inputValue(), "7.5");
+    await reset.press("Enter");
+    await settled();
+    const { settings } = (await requestHandedOut(page)).controllers[0];
+    assert.deepEqual([settings.GAIN, settings.RESET], [1.3, 7.5]);
+  });
+});
+
+test("an answer about settings that a slider replaces is not shown; the release asks for the new ones", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    const release = await hold(page, "**/v1/evaluate");
+    const asked = page.waitForRequest("**/v1/evaluate");
+    await chooseProduct(page, person(page), "deltav standard", "Emerson DeltaV PID, FORM Standard");
+    await giveRanges(page);
+    await asked;
+    const range = slider(page, "Robustness Ms");
+    await range.scrollIntoViewIfNeeded();
+    const box = await range.boundingBox();
+    const designed = page.waitForResponse("**/v1/design");
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    await designed;
+    const answered = page.waitForResponse("**/v1/evaluate").catch(() => null);
+    release();
+    await Promise.race([answered, page.waitForTimeout(1000)]);
+    assert.equal(await page.getByRole("heading", { name: /^Type into/ }).count(), 0);
+    await page.mouse.up();
+    await page.getByRole("heading", { name: /^Type into/ }).waitFor();
+    await page.getByText("robust, moved by the sliders", { exact: true }).waitFor();
+  });
+});
+
+test("a product that could not be loaded is asked for again", async () => {
+  await withPage(
+    "",
+    {},
+    async (page) => {
+      let lost = 2;
+      await page.route("**/v1/controllers/emerson_deltav_standard", (route) => (lost-- > 0 ? route.abort() : route.continue()));
+      const { id } = await post("v1/jobs", LOOP);
+      await page.goto(`${tests.service.base}/#/jobs/${id}/design`);
+      await page.getByRole("heading", { name: "Type into Emerson DeltaV PID, FORM Standard" }).waitFor();
+      await page.locator("table.typed tr", { hasText: "GAIN" }).waitFor();
+      assert.equal(await page.locator(".typed-card > .trouble:visible").count(), 0);
+    },
+    ["ERR_FAILED"],
+  );
+});
+
+test("values typed into a product are there as typed after a reload, and for another reader of the address", async () => {
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    await openLoop(page, { ...LOOP, implement: undefined, baseline: undefined });
+    await chooseProduct(page, person(page), "deltav standard", "Emerson DeltaV PID, FORM Standard");
+    await giveRanges(page);
+    await page.getByRole("button", { name: "Type other values" }).click();
+    const gain = page.getByRole("textbox", { name: "GAIN, new" });
+    await gain.fill("1.3");
+    await gain.press("Enter");
+    await page.waitForURL(/typed=/);
+    await settled();
+    const asTyped = async (there) => {
+      await there.getByRole("heading", { name: "Type into Emerson DeltaV PID, FORM Standard" }).waitFor();
+      await there.getByText("robust, set by hand", { exact: true }).waitFor();
+      await there.waitForFunction(
+        () => [...document.querySelectorAll("table.typed tr")].some((row) => /^GAIN/.test(row.textContent) && Number(row.querySelector(".value").textContent) === 1.3),
+      );
+      const request = await requestHandedOut(there);
+      assert.deepEqual([request.controllers[0].settings.GAIN, request.implement.product], [1.3, "emerson_deltav_standard"]);
+    };
+    await page.reload();
+    await asTyped(page);
+    await withPage(new URL(page.url()).hash, {}, asTyped);
   });
 });
 

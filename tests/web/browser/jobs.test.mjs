@@ -34,6 +34,18 @@ test("a job is found, duplicated and deleted after one question", async () => {
   });
 });
 
+test("a name of 100 letters leaves the actions of the list in the window", async () => {
+  const name = "Temperaturregelung".repeat(6).slice(0, 100);
+  await post("v1/jobs", { name, plant: PLANT, tune: [{ method: "simc" }] });
+  await withPage("#/jobs", {}, async (page) => {
+    const row = page.getByRole("row").filter({ hasText: name });
+    await row.waitFor();
+    const box = await row.getByRole("button", { name: /^Delete/ }).boundingBox();
+    const list = await page.getByRole("region", { name: "List of jobs" }).boundingBox();
+    assert.ok(box.x + box.width <= list.x + list.width, `${box.x + box.width} > ${list.x + list.width}`);
+  });
+});
+
 test("a CSV of loops becomes a batch with a table, an order and a CSV", async () => {
   const loops = readFileSync(path.join(root, "docs/loops.csv"));
   await withPage("#/jobs", {}, async (page) => {

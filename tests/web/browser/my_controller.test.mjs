@@ -211,8 +211,31 @@ test("a list is searched by maker, name and parameter, with the keyboard alone",
     await search(page).fill("no such maker");
     await page.getByText('There is no entry "no such maker".').first().waitFor();
     await page.keyboard.press("Tab");
-    assert.equal(await search(page).inputValue(), TEXTBOOK_FORMS[0]);
-    assert.equal(await typed(page).count(), 0);
+    assert.equal(await typed(page).count(), 0, "the ideal form is still chosen");
+  });
+});
+
+test("a name that is not in the list stays, and says what is chosen instead", async () => {
+  await withPage("#/new/fopdt?K=2&T=10&L=3", {}, async (page) => {
+    await choose(page, "klipper", "Klipper heater (control: pid)");
+    await search(page).fill("DeltaW");
+    await search(page).press("Tab");
+    assert.equal(await search(page).inputValue(), "DeltaW");
+    await page.getByText('There is no controller "DeltaW" in the list. Klipper heater (control: pid) is still chosen').first().waitFor();
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await page.getByText("1 problem to fix").waitFor();
+    await search(page).focus();
+    await search(page).press("Escape");
+    assert.equal(await search(page).inputValue(), "Klipper heater (control: pid)");
+    await search(page).fill("");
+    await search(page).press("Tab");
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await designShown(page);
+    await search(page).fill("DeltaW");
+    await search(page).press("Tab");
+    assert.equal(await search(page).inputValue(), "DeltaW");
+    await page.getByText('There is no controller "DeltaW" in the list. Ideal form: Kp, Ti, Td is still chosen').waitFor();
+    assert.deepEqual(await accessibilityViolations(page), []);
   });
 });
 

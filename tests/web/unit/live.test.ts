@@ -197,6 +197,21 @@ test("settings by hand on a modified design come back from the address with all 
   assert.deepEqual(back(bare, controller), bare);
 });
 
+test("settings typed into a product come back from the address as they were typed", () => {
+  const proposal: Point = { tune: { method: "robust" }, manual: null };
+  const sliders = optionSliders(proposal.tune!, entryOf("robust"), robust, units);
+  const typed = { product: "a_block", settings: { GAIN: 1.3, FORM: "Standard & more" }, y_span: [0, 200] as [number, number] };
+  const point: Point = { ...proposal, manual: withManual(controller, "Kp", 0.65), typed };
+  const values = valuesOf(point, proposal, controller, sliders);
+  const route = parseRoute(formatRoute({ screen: "design", job: "j", entry: null, values }));
+  assert.ok(route.screen === "design");
+  assert.deepEqual(pointOf(route.values ?? {}, proposal, controller, sliders), point);
+  for (const cut of ["", "{", "3", '{"product":"a_block"}'])
+    assert.equal(pointOf({ ...values, typed: cut }, proposal, controller, sliders).typed, undefined, cut);
+  const { typed: text } = values;
+  assert.deepEqual(pointOf({ typed: text! }, proposal, controller, sliders), proposal, "without a controller for the sliders");
+});
+
 test("the front has the design as a point that can be taken, today's settings, and the rules by name", () => {
   const point = (Ms: number, IAE: number) => ({
     Ms,

@@ -76,6 +76,12 @@ test("a product is found by the family or the tool by which its users know it, b
   assert.deepEqual(ids("pid compact"), ["siemens_pid_compact", "rockwell_pide"], "a name comes before a family");
 });
 
+test("a product is found in each spelling of its letters", () => {
+  const list = [summary("a", "Jäger", "Regler", [])];
+  for (const typed of ["jager", "Jaeger", "JÄGER"]) assert.deepEqual(findProducts(list, typed).map(({ id }) => id), ["a"], typed);
+  assert.equal(productTitle({ maker: "Jäger", name: "Jäger R4" }), "Jäger R4");
+});
+
 test("a name's own words come before what lies inside words and parameters", () => {
   const list = [summary("a", "Acme", "Regulator", ["fox"]), summary("b", "Zeta", "Fox", [])];
   assert.deepEqual(
@@ -151,6 +157,7 @@ test("rows stand in the product's order under its labels; the switch of the dire
   );
   assert.equal(rows[1]!.about, "0 to 60, step 0.01");
   assert.equal(rows[2]!.about, "CA turns the error.");
+  assert.deepEqual(rows.map(({ explains }) => explains), ["Kp", "Ti", "action"], "by their roles");
   assert.equal(typedText("Acme PID: robust", rows), "Acme PID: robust\nS1 Kp = 2.500\nTi = 1.25 min\nCA = 1");
 });
 

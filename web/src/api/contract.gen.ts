@@ -209,6 +209,7 @@ export type components = {
       u?: number[];
       y?: number[];
       r?: number[];
+      mode?: string[];
       d?: components["schemas"]["MeasuredDisturbance"][];
       csv?: string;
       columns?: components["schemas"]["Columns"];
@@ -237,6 +238,7 @@ export type components = {
       u?: string | number;
       y?: string | number;
       r?: string | number;
+      mode?: string | number;
       d?: (string | number)[];
     };
     UltimateTest: {
@@ -1167,9 +1169,9 @@ export type components = {
       worst_relative_IAE: number;
       mean_relative_IAE: number;
       worst_at: number;
-      points: components["schemas"]["PlacePrice"][];
+      points: components["schemas"]["PointCost"][];
     };
-    PlacePrice: {
+    PointCost: {
       at: number;
       own: components["schemas"]["Controller"];
       own_IAE: number;
@@ -1284,7 +1286,8 @@ export type components = {
       model: components["schemas"]["Model"];
     };
     ControllerRecordAnswer: {
-      identified: components["schemas"]["IdentifiedController"];
+      identified?: components["schemas"]["IdentifiedController"];
+      not_identified?: string;
       typing?: components["schemas"]["SettingsAnswer"];
       not_typed?: string;
     };
@@ -1628,7 +1631,7 @@ export type RangeResult = components['schemas']['RangeResult'];
 export type Range = components['schemas']['Range'];
 export type RangePoint = components['schemas']['RangePoint'];
 export type OneSetting = components['schemas']['OneSetting'];
-export type PlacePrice = components['schemas']['PlacePrice'];
+export type PointCost = components['schemas']['PointCost'];
 export type Schedule = components['schemas']['Schedule'];
 export type ScheduleRow = components['schemas']['ScheduleRow'];
 export type RangeCurves = components['schemas']['RangeCurves'];

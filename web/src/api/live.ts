@@ -110,7 +110,7 @@ const LONGEST_WAIT_S = 20;
 /**
  * Frontiers, each null if the plant has none, and every rule's entry if they are wanted. The job for them is deleted.
  */
-export async function besideOf(
+export async function referenceOf(
   plant: Plant,
   fronts: readonly FrontTerms[],
   rules: boolean,

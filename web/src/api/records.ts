@@ -44,8 +44,8 @@ export async function previewRecord({ csv, columns, dt, time_unit, u_step, run }
   return previewed((await call("POST", "v1/records/preview", request)).data);
 }
 
-/** Today's settings in the record of a loop in automatic, and as typed into the product if it is given; a refusal says
-    why there are none. */
+/** Today's settings in the record of a loop in automatic, and as typed into the product if it is given; or the reason
+    why the record does not show them. */
 export async function controllerInRecord(
   record: RecordedTest,
   implement: Implement | null,

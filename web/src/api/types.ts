@@ -101,7 +101,7 @@ export interface TuningRequest extends Pick<Contract.TuningRequest, "name" | "un
 /** Today's settings as the service finds them in a record. */
 export type IdentifiedController = Contract.IdentifiedController & { certain?: boolean };
 export type ControllerInRecord = Omit<Contract.ControllerRecordAnswer, "identified" | "typing"> & {
-  identified: IdentifiedController;
+  identified?: IdentifiedController;
   typing?: Contract.SettingsAnswer & { standard_errors?: Record<string, number> };
 };
 export type IdentifyRequest = Pick<TuningRequest, "name" | "units" | "identify"> & Pick<Contract.IdentifyRequest, "record">;

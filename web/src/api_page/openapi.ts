@@ -87,12 +87,12 @@ const METHODS = ["get", "post", "put", "patch", "delete"];
 export function resolved<T extends { $ref?: string }>(document: ApiDocument, part: T): T {
   let whole = part;
   while (whole.$ref !== undefined) {
-    const { $ref, ...beside } = whole;
+    const { $ref, ...siblings } = whole;
     const target = $ref
       .replace(/^#\//, "")
       .split("/")
       .reduce<unknown>((at, name) => (at as Record<string, unknown> | undefined)?.[name], document);
-    whole = { ...(target as T), ...(beside as Partial<T>) };
+    whole = { ...(target as T), ...(siblings as Partial<T>) };
   }
   return whole;
 }

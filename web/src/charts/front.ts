@@ -42,11 +42,11 @@ export function frontFrame(shown: FrontShown, units: UnitNames): Frame {
     ...(today ? [{ kind: "point" as const, ...today, label: "today", look: 2 as const }] : []),
     ...(here ? [{ kind: "point" as const, ...here, label: "", look: 1 as const, handle: shown.here.at !== null }] : []),
   ];
-  const beside = rules.length === 0 ? "" : ` ${rules.length} rules are shown for comparison.`;
+  const rulesSentence = rules.length === 0 ? "" : ` ${rules.length} rules are shown for comparison.`;
   return {
     title: "Robustness against speed",
     description: here
-      ? `The design has Ms ${formatNumber(here.x)} and a load IAE of ${formatNumber(here.y)}.${beside}`
+      ? `The design has Ms ${formatNumber(here.x)} and a load IAE of ${formatNumber(here.y)}.${rulesSentence}`
       : "There is no such design.",
     x: { kind: "linear", label: "Ms", range: [LOWEST_MS, HIGHEST_MS] },
     panes: [

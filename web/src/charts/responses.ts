@@ -13,7 +13,7 @@ const MAX_WITH_LINEAR = 2;
 export const hasLinear = (drawn: Drawn[]): boolean => drawn.some((item) => item.entry.linear?.responses);
 
 /** The sentence above such plots. */
-export const BESIDE_LINEAR =
+export const LINEAR_NOTE =
   "Responses are those of the equations; thin and dotted: the same controller on their linear model.";
 
 /** The peak that can be dragged, and the slider that follows. */
@@ -36,8 +36,8 @@ export function responseFrame(
   const traces = (signal: "y" | "u"): Trace[] =>
     drawn.flatMap((item): Trace[] => {
       const response = item.entry.responses?.[kind];
-      const beside = drawn.length <= MAX_WITH_LINEAR || item.index === selected;
-      const linear = beside ? item.entry.linear?.responses?.[kind] : undefined;
+      const withLinear = drawn.length <= MAX_WITH_LINEAR || item.index === selected;
+      const linear = withLinear ? item.entry.linear?.responses?.[kind] : undefined;
       return [
         ...(response ? [{ name: item.name, look: item.look, x: response.t, y: response[signal] }] : []),
         ...(linear

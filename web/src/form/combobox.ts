@@ -17,7 +17,7 @@ export interface Combobox {
   field: Field<HTMLInputElement>;
   /** Shows a choice without reporting it; null empties the field. */
   set(choice: Choice | null): void;
-  /** The typed text that is not an item and stays in the field because nothing is chosen; else "". */
+  /** The typed text that is not an item and was left in the field; else "". */
   unmatched(): string;
   /** The list has changed: searched again if it is open. */
   refresh(): void;
@@ -28,7 +28,7 @@ export interface ComboboxOptions extends ControlOptions {
   find(typed: string): Choice[];
   /** null: the field was emptied. */
   onChoose(choice: Choice | null): void;
-  /** The field was left without a choice: it is empty, or has a text that is not an item. */
+  /** The field was left empty, or with a text that is not an item: an earlier choice is kept. */
   onLeft?(): void;
 }
 
@@ -56,6 +56,8 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
   ] as const)
     input.setAttribute(name, value);
 
+  /** The text of the field that is not the chosen item's. */
+  const stray = (): string => (input.value === chosen?.text ? "" : input.value.trim());
   const isOpen = (): boolean => !list.hidden || !none.hidden;
 
   function activate(index: number): void {
@@ -122,9 +124,8 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
   input.addEventListener("blur", () => {
     close();
     if (input.value.trim() === "") take(null);
-    // An incomplete name chooses nothing: the previous choice is shown again. Without one the text stays.
-    if (chosen) input.value = chosen.text;
-    else options.onLeft?.();
+    // An incomplete name chooses nothing, and stays: if it were replaced, the earlier choice would look like a new one.
+    if (!chosen || stray() !== "") options.onLeft?.();
   });
   input.addEventListener("keydown", (event) => {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
@@ -140,9 +141,10 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
       const choice = found[active];
       if (choice) take(choice);
       else if (input.value.trim() === "") take(null);
-    } else if (event.key === "Escape" && isOpen()) {
+    } else if (event.key === "Escape" && (isOpen() || stray() !== "")) {
       event.preventDefault();
       input.value = chosen?.text ?? "";
+      errors.settle(field.control);
       input.select();
       close();
     }
@@ -153,9 +155,11 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
     field,
     set(choice) {
       chosen = choice;
-      if (document.activeElement !== input || !isOpen()) input.value = choice?.text ?? "";
+      if (document.activeElement === input && isOpen()) return;
+      input.value = choice?.text ?? "";
+      errors.settle(field.control);
     },
-    unmatched: () => (chosen || isOpen() ? "" : input.value.trim()),
+    unmatched: () => (isOpen() ? "" : stray()),
     refresh() {
       if (!isOpen()) return;
       const marked = found[active]?.id;

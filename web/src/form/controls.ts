@@ -10,6 +10,8 @@ export interface ControlOptions {
   value?: string;
   placeholder?: string;
   wide?: boolean;
+  /** Wraps the text of the label in a button that explains it; a press on the label then does not focus the field. */
+  explain?(text: HTMLElement): HTMLElement;
   /** The label is only for readers who do not see the row's heading. */
   bare?: boolean;
   rows?: number;
@@ -33,11 +35,18 @@ function assemble<T extends Control["input"]>(input: T, options: ControlOptions,
   input.setAttribute("aria-describedby", [hint?.id, error.id].filter(Boolean).join(" "));
   const control: Control = { input, error, pointer: options.pointer };
   errors.add(control);
-  const label = h("span", {}, options.label);
+  const label = h("span", { id: `${input.id}-label` }, options.label);
+  let head: HTMLElement;
+  if (options.explain) {
+    // A button cannot stand inside a label element.
+    unit.id = `${input.id}-unit`;
+    input.setAttribute("aria-labelledby", `${label.id} ${unit.id}`);
+    head = h("span", { class: "label" }, options.explain(label), unit);
+  } else head = h("label", { for: input.id, class: options.bare ? "visually-hidden" : null }, label, unit);
   const element = h(
     "div",
     { class: options.wide ? "field wide" : "field" },
-    h("label", { for: input.id, class: options.bare ? "visually-hidden" : null }, label, unit),
+    head,
     input,
     error,
     hint,

@@ -122,12 +122,12 @@ export class FormErrors {
   }
 
   private inWords(control: Control, error: FieldError): string {
-    const beside = [...this.controls.keys()].flatMap((item) => {
+    const labels = [...this.controls.keys()].flatMap((item) => {
       const pointer = item.pointer();
       if (pointer === null || parentOf(pointer) !== parentOf(error.pointer)) return [];
       return [[memberOf(pointer), labelOf(item)] as const];
     });
-    return inLabels(error, labelOf(control), new Map(beside));
+    return inLabels(error, labelOf(control), new Map(labels));
   }
 
   private clearControl(control: Control): void {

@@ -65,6 +65,6 @@ export function linkOf(request: TuningRequest): Extract<Route, { screen: "new" }
     ...methodTexts(tune),
     rest: json({ ...others, ...(Object.keys(built).length > 0 ? { implement: built } : {}) }),
   };
-  const told = Object.entries(values).filter(([, text]) => text !== "");
-  return { screen: "new", plant: described.plant, values: Object.fromEntries(told) };
+  const given = Object.entries(values).filter(([, text]) => text !== "");
+  return { screen: "new", plant: described.plant, values: Object.fromEntries(given) };
 }

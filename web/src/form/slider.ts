@@ -10,6 +10,8 @@ export interface SliderOptions {
   label: string;
   unit?: string;
   hint?: string;
+  /** As of a field: wraps the text of the label in a button that explains it. */
+  explain?(text: HTMLElement): HTMLElement;
   /** Even steps of the logarithm; both ends have the same sign. */
   log?: boolean;
   /** The step of an arrow key, relative to the value if the slider is logarithmic; by default a thousandth of the

@@ -45,7 +45,7 @@ export function stepForward(steps: Steps): Steps {
 }
 
 /** Parts that no slider by hand moves, and that may differ from the proposal in a modified design. */
-const BESIDE_MANUAL = ["b", "c", "delta_r", "filter.type", "setpoint_filter.T"];
+const OTHER_PARTS = ["b", "c", "delta_r", "filter.type", "setpoint_filter.T"];
 
 const at = (whole: TuneEntry | Controller | null | undefined, id: string): unknown =>
   id.split(".").reduce<unknown>((value, part) => (value as Record<string, unknown> | undefined)?.[part], whole ?? {});
@@ -70,11 +70,25 @@ export function valuesOf(
     const value = manualValue(point.manual, name);
     if (value !== null) values[name] = String(value);
   }
-  for (const id of BESIDE_MANUAL) {
+  for (const id of OTHER_PARTS) {
     const value = at(point.manual, id);
     if (value !== at(controller, id)) values[id] = String(value ?? "");
   }
+  if (point.typed) values[TYPED] = JSON.stringify(point.typed);
   return values;
+}
+
+/** The name of the settings as typed into a product in an address. */
+const TYPED = "typed";
+
+/** The settings as typed in an address, which may be cut or changed; undefined if there are none. */
+function typedOf(values: Record<string, string>): TypedSettings | undefined {
+  try {
+    const typed = JSON.parse(values[TYPED] ?? "null") as TypedSettings | null;
+    return typeof typed?.product === "string" && typeof typed.settings === "object" && typed.settings !== null ? typed : undefined;
+  } catch {
+    return undefined;
+  }
 }
 
 /** The same controller with a part from the address; an empty text removes it. */
@@ -97,7 +111,7 @@ function manualOf(values: Record<string, string>, controller: Controller): Contr
     manualValue(controller, name) !== null || (name === "Tf" && "filter.type" in values);
   const given = MANUAL.filter((name) => numberIn(values, name) !== null && has(name));
   if (given.length === 0) return null;
-  const base = BESIDE_MANUAL.filter((id) => id in values).reduce((to, id) => withPart(to, id, values[id]!), controller);
+  const base = OTHER_PARTS.filter((id) => id in values).reduce((to, id) => withPart(to, id, values[id]!), controller);
   return given.reduce((to, name) => withManual(to, name, numberIn(values, name)!), base);
 }
 
@@ -113,7 +127,9 @@ export function pointOf(
     const value = numberIn(values, id);
     if (tune && value !== null) tune = withOption(tune, id, value);
   }
-  return { tune, manual: (controller && manualOf(values, controller)) ?? proposal.manual };
+  const manual = controller ? manualOf(values, controller) : null;
+  const typed = manual ? typedOf(values) : undefined;
+  return { tune, manual: manual ?? proposal.manual, ...(typed ? { typed } : {}) };
 }
 
 /** True if options that may move together with another one do so. */

@@ -20,8 +20,8 @@ export function pursue(known: readonly KnownFigure[], target: number, lo: number
   const newest = known.at(-1);
   if (!newest) return lo;
   const inside = (value: number): number => Math.min(hi, Math.max(lo, value));
-  const below = nearestBeside(known, target, (difference) => difference <= 0);
-  const above = nearestBeside(known, target, (difference) => difference >= 0);
+  const below = nearestOn(known, target, (difference) => difference <= 0);
+  const above = nearestOn(known, target, (difference) => difference >= 0);
   if (below && above) {
     if (below.figure === above.figure) return inside(below.value);
     return inside(below.value + ((target - below.figure) / (above.figure - below.figure)) * (above.value - below.value));
@@ -34,7 +34,7 @@ export function pursue(known: readonly KnownFigure[], target: number, lo: number
 }
 
 /** The known figure closest to the target among those on one side of it. */
-function nearestBeside(known: readonly KnownFigure[], target: number, on: (difference: number) => boolean): KnownFigure | undefined {
+function nearestOn(known: readonly KnownFigure[], target: number, on: (difference: number) => boolean): KnownFigure | undefined {
   return known
     .filter(({ figure }) => on(figure - target))
     .sort((a, b) => Math.abs(a.figure - target) - Math.abs(b.figure - target))[0];

@@ -82,9 +82,9 @@ function drawGrid(box: PaneBox): TreeNode[] {
 function drawTickTexts(box: PaneBox, last: boolean): TreeNode[] {
   const { x, y } = axisTicks(box);
   const bottom = box.top + box.height;
-  const besideY = tickTexts(y);
+  const yTexts = tickTexts(y);
   const texts: TreeNode[] = y.map((value, index) =>
-    node("text", { x: box.left - 6, y: round(box.y.toPixel(value) + 4), "text-anchor": "end" }, besideY[index]!),
+    node("text", { x: box.left - 6, y: round(box.y.toPixel(value) + 4), "text-anchor": "end" }, yTexts[index]!),
   );
   if (!last) return texts;
   let free = -Infinity;

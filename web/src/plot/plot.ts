@@ -210,7 +210,8 @@ export function createPlot(
 
   const pointers = new Map<number, { x: number; y: number }>();
   let drag: { x: number; y: number } | null = null;
-  let taken: { pane: number; from: Place } | null = null;
+  /** What is dragged: where it was pressed, the pointer that drags it, and its last place. */
+  let taken: { pane: number; from: Place; pointer: number; last: Place } | null = null;
 
   function hover(point: { x: number; y: number }): void {
     const box = boxAt(point.y);
@@ -222,9 +223,9 @@ export function createPlot(
 
   svg.addEventListener("pointerdown", (event) => {
     const place = pointOf(event);
-    if (event.button === 0 && grabs(place, event.pointerType !== "mouse")) {
+    if (!taken && event.button === 0 && grabs(place, event.pointerType !== "mouse")) {
       const box = boxAt(place.y);
-      taken = { pane: layout.boxes.indexOf(box), from: valuesAt(box, place) };
+      taken = { pane: layout.boxes.indexOf(box), from: valuesAt(box, place), pointer: event.pointerId, last: place };
       event.preventDefault();
       svg.setPointerCapture(event.pointerId);
       return;
@@ -237,7 +238,12 @@ export function createPlot(
   });
   svg.addEventListener("pointermove", (event) => {
     const point = pointOf(event);
-    if (taken) return moveGrabbed(point, false);
+    if (taken) {
+      // A second finger neither drags nor zooms meanwhile.
+      if (event.pointerId !== taken.pointer) return;
+      taken.last = point;
+      return moveGrabbed(point, false);
+    }
     const before = pointers.get(event.pointerId);
     if (pointers.size === 2 && before) {
       const other = [...pointers].find(([id]) => id !== event.pointerId)![1];
@@ -253,12 +259,14 @@ export function createPlot(
     else hover(point);
   });
   const release = (event: PointerEvent): void => {
+    pointers.delete(event.pointerId);
     if (taken) {
-      moveGrabbed(pointOf(event), true);
+      if (event.pointerId !== taken.pointer) return;
+      // A pointer that the browser cancels has no place.
+      moveGrabbed(event.type === "pointerup" ? pointOf(event) : taken.last, true);
       taken = null;
       return;
     }
-    pointers.delete(event.pointerId);
     const start = drag;
     drag = null;
     if (event.type !== "pointerup") return drawCursor();
@@ -376,9 +384,9 @@ export function createPlot(
     say(largeOf, `Enlarge ${frame.title}`);
     say(exportOf, ` ${frame.title}`);
     setAttribute(table, "aria-label", `Data of ${frame.title}`);
-    const beside = other ? given : given.alternative;
+    const alternative = other ? given : given.alternative;
     otherButton.hidden = !given.alternative;
-    say(otherButton, beside?.title ?? "");
+    say(otherButton, alternative?.title ?? "");
     say(description, `${frame.description} ${KEYS_SENTENCE}`);
     if (frame.ownLegend) legend.replaceChildren(paneLegend(frame));
   };

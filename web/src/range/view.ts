@@ -150,6 +150,10 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
   }
 
   async function openJob(id: string): Promise<void> {
+    // The form and the result of before are another request's; what is typed into them now would be lost.
+    calls.drop();
+    result.clear();
+    setBusy(true);
     try {
       const [job] = await Promise.all([getJob(id), list()]);
       const request: unknown = job.request;
@@ -157,11 +161,11 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
       form.load(request);
       form.choose("");
       if (job.result?.range) {
-        calls.drop();
         setBusy(false);
         result.show(request, job.result.range, form.read().request);
       } else design();
     } catch (error) {
+      setBusy(false);
       complain(error);
     }
   }

@@ -1,4 +1,5 @@
 // A figure that explains itself: its label is a button that opens two sentences, a picture and a link to a document.
+import type { Child } from "../dom.ts";
 import { h, svgElement, uniqueId } from "../dom.ts";
 import type { ExplainedName } from "../words/explained.ts";
 
@@ -44,7 +45,7 @@ function place(box: HTMLElement, button: DOMRect): void {
 }
 
 /** `label`: what the button shows; `spoken`: its name if that is not enough. */
-export function explained(name: ExplainedName, label: string, spoken = ""): HTMLButtonElement {
+export function explained(name: ExplainedName, label: Child, spoken = ""): HTMLButtonElement {
   const button = h("button", { type: "button", class: "explain", "aria-haspopup": "dialog", "aria-label": spoken || null }, label);
   button.addEventListener("click", () => void open(button, name).catch(() => undefined));
   return button;

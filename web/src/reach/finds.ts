@@ -1,4 +1,5 @@
 // What a search over the whole page finds, best first.
+import { plainText, searchText, searchWords, spellings } from "../words/search_text.ts";
 
 export type FindKind = "action" | "screen" | "job" | "controller" | "method" | "document";
 
@@ -16,16 +17,12 @@ export interface Find {
 const ORDER: readonly FindKind[] = ["action", "screen", "job", "controller", "method", "document"];
 const MAX_FINDS = 60;
 
-/** Lower case, without the signs that separate words, and without accents. */
-const plain = (text: string): string =>
-  ` ${text.toLowerCase().normalize("NFD").replaceAll(/\p{M}/gu, "").replaceAll(/[^\p{L}\p{N}]+/gu, " ")}`;
-
 /** 0: its text begins with the typed one; 1: its text has every typed word; 2: its words together have; 3: somewhere
     inside a word; -1: not found. */
 function rankOf({ text, aside, words = "" }: Find, typed: string, parts: readonly string[]): number {
-  const name = plain(text);
-  const all = name + plain(aside) + plain(words);
-  if (name.startsWith(typed)) return 0;
+  const name = searchText(text);
+  const all = name + searchText(aside) + searchText(words);
+  if (spellings(text).some((spelling) => spelling.startsWith(typed))) return 0;
   if (parts.every((part) => name.includes(` ${part}`))) return 1;
   if (parts.every((part) => all.includes(` ${part}`))) return 2;
   return parts.every((part) => all.includes(part)) ? 3 : -1;
@@ -36,8 +33,8 @@ const AT_FIRST: readonly FindKind[] = ["screen", "job", "action"];
 
 /** Finds with every typed word, best first. */
 export function search(finds: readonly Find[], typed: string): Find[] {
-  const whole = plain(typed).trimEnd();
-  const parts = whole.split(" ").filter(Boolean);
+  const whole = plainText(typed);
+  const parts = searchWords(typed);
   if (parts.length === 0) return AT_FIRST.flatMap((wanted) => finds.filter(({ kind }) => kind === wanted)).slice(0, MAX_FINDS);
   return finds
     .map((find) => ({ find, rank: rankOf(find, whole, parts) }))

@@ -3,7 +3,7 @@ import { isFinal } from "../api/types.ts";
 import type { Job, Result } from "../api/types.ts";
 import { defaultOverlay, drawnEntries } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
-import { BESIDE_LINEAR, hasLinear } from "../charts/responses.ts";
+import { LINEAR_NOTE, hasLinear } from "../charts/responses.ts";
 import { h } from "../dom.ts";
 import { asksForAll } from "../form/tuning_request.ts";
 import { csvText, download } from "../plot/export.ts";
@@ -54,7 +54,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     star,
     all,
   );
-  const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
+  const linearNote = h("p", { class: "hint", hidden: true }, LINEAR_NOTE);
   const overlay = h(
     "section",
     { class: "main-column", "aria-labelledby": "overlay-title" },

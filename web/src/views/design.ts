@@ -6,8 +6,8 @@ import type { Job, Result, TuningRequest } from "../api/types.ts";
 import { defaultDrawn, drawnEntries, entryNames, proposedEntry } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { recordFrame } from "../charts/record.ts";
-import { BESIDE_LINEAR, hasLinear } from "../charts/responses.ts";
-import { h } from "../dom.ts";
+import { LINEAR_NOTE, hasLinear } from "../charts/responses.ts";
+import { h, keepFocus } from "../dom.ts";
 import { withLambda } from "../form/tuning_request.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
@@ -90,7 +90,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const legend = createLegend(store);
   const plots = plotGrid(announce);
   const replay = replayCard(plots);
-  const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
+  const linearNote = h("p", { class: "hint", hidden: true }, LINEAR_NOTE);
   let finished: { job: Job; result: Result } | null = null;
   let screen: OnScreen | null = null;
   /** The job on the cards. */
@@ -170,14 +170,16 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       columns.some(({ entry }) => entry.region),
       columns.some(({ entry }) => entry.controller?.form === "npid"),
     );
-    const main = figuresTable("Main figures", columns, groups.filter((group) => group.main));
-    mainFigures.replaceWith(main);
-    mainFigures = main;
-    // Folded parts are updated on release.
-    if (held) return;
-    const others = figuresTable("All other figures", columns, groups.filter((group) => !group.main));
-    otherFigures.replaceWith(others);
-    otherFigures = others;
+    keepFocus(figures, () => {
+      const main = figuresTable("Main figures", columns, groups.filter((group) => group.main));
+      mainFigures.replaceWith(main);
+      mainFigures = main;
+      // Folded parts are updated on release.
+      if (held) return;
+      const others = figuresTable("All other figures", columns, groups.filter((group) => !group.main));
+      otherFigures.replaceWith(others);
+      otherFigures = others;
+    });
   }
 
   /** Updates the parts that follow a slider: verdict, settings, figures and plots. */
@@ -191,7 +193,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const drawn = drawnEntries(result, workspace.drawn ? drawnOf(workspace.drawn, origin) : defaultDrawn(result));
     const listed = listedEntries(entries.length, drawn, index);
     const record = formatRoute({ screen: "identify", job: job.id });
-    showVerdict(verdict, result, names, index, listed, record, units);
+    keepFocus(verdict, () => showVerdict(verdict, result, names, index, listed, record, units));
     if (held) own.move(ownShown(job, whole, index, names[index]!, units));
     showFigures(result, listed, drawn, names, units, held);
     linearNote.hidden = !hasLinear(drawn);
@@ -214,6 +216,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     code: screen!.result === whole ? index : null,
     mark: modified.mark(),
     typeable: modified.isMovable(),
+    outdated: modified.isOutdated(),
   });
 
   function showResult(job: Job, whole: Result, workspace: Workspace): void {

@@ -57,8 +57,8 @@ export function methodsView(store: Store, id: string): View {
   search.addEventListener("input", filter);
   show(store.get().methods);
   const leave = store.subscribe((workspace, previous) => {
-    const told = workspace.methods.length === 0 && workspace.serviceTrouble !== previous.serviceTrouble;
-    if (told || workspace.methods !== previous.methods) show(workspace.methods);
+    const unavailable = workspace.methods.length === 0 && workspace.serviceTrouble !== previous.serviceTrouble;
+    if (unavailable || workspace.methods !== previous.methods) show(workspace.methods);
   });
   return { element, heading, dispose: leave };
 }

@@ -47,6 +47,8 @@ export interface ModifiedDesign {
   grips(): Grips | null;
   /** The entry has sliders, hence other settings can be shown in its place. */
   isMovable(): boolean;
+  /** Other settings were chosen than those of the newest answer. */
+  isOutdated(): boolean;
   /** Shows these settings, as one step. */
   setByHand(settings: SettingsByHand): void;
   dispose(): void;
@@ -314,6 +316,10 @@ export function modifiedDesign(
     answer: () => live.answer.peek(),
     grips: () => (live.point.peek() !== null && !controls.element.hidden ? grips : null),
     isMovable: () => live.point.peek() !== null && !controls.element.hidden,
+    isOutdated() {
+      const [asked, answered] = [live.point.peek(), live.answer.peek()?.point ?? proposal];
+      return asked !== null && answered !== null && !samePoint(asked, answered);
+    },
     setByHand({ controller, typed }) {
       live.settle({ tune: (live.point.peek() ?? proposal!).tune, manual: controller, ...(typed ? { typed } : {}) });
     },

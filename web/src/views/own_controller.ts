@@ -1,6 +1,6 @@
 // The user's own controller on Design: its choice, the settings to type, today's settings in it, its law, and the
 // entry's controller as code.
-import { ApiError, sentenceOf } from "../api/client.ts";
+import { ApiError, sentenceOf, waitAfter } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
 import { callSubject } from "../api/live.ts";
 import { getProduct, knownProduct } from "../api/products.ts";
@@ -45,6 +45,8 @@ interface Shown {
   mark: string;
   /** Other settings can be typed in their place. */
   typeable: boolean;
+  /** A newer answer is on its way. */
+  outdated: boolean;
 }
 
 export interface OwnController {
@@ -52,7 +54,8 @@ export interface OwnController {
   answer: HTMLElement;
   below: HTMLElement[];
   show(shown: Shown): void;
-  /** While a slider is held: the settings alone, as far as they are known without a request to the service. */
+  /** While a slider is held: the settings alone, as far as they are known without a request to the service. What was
+      asked before is outdated; the release asks again. */
   move(shown: Shown): void;
   /** Settings that are tried by hand; null: the entry's own again. */
   follow(controller: Controller | null): void;
@@ -78,7 +81,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
   const about = productCard();
   const code = codeCard(announce);
   const redesign = h("button", { type: "button", onclick: () => void designForMine() });
-  const today = ownTodayCard(errors, (settings) => void designBesideToday(settings));
+  const today = ownTodayCard(errors, (settings) => void designWithToday(settings));
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const picker = myControllerCard(
     errors,
@@ -100,11 +103,27 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       showTyped(product, entered, judged ?? (tried ? null : shown.result.controllers[shown.index]!));
       if (!tried) announce(`Settings of ${shown.name} for ${mine?.name ?? product.name} are shown.`);
     },
-    onError(error) {
-      answer.complain(["Nothing to type", ""], firstFault(error));
-      asked = "";
-    },
+    onError: fail,
   });
+
+  function fail(error: unknown): void {
+    answer.complain(["Nothing to type", ""], firstFault(error));
+    asked = "";
+    later(error, () => asked === "" && ask());
+  }
+
+  /** Tries again while the card is shown, if a failed call may succeed then. */
+  function later(error: unknown, again: () => void): void {
+    const wait = waitAfter(error);
+    if (wait !== null) setTimeout(() => shown && again(), wait);
+  }
+
+  /** Nothing is asked any more: an answer in progress would replace newer settings. */
+  function dropQuestion(): void {
+    calls.drop();
+    asked = "";
+    answer.setBusy(false);
+  }
 
   function firstFault(error: unknown): string {
     const listed = error instanceof ApiError ? errors.mark("/implement", underImplement(error)) : [];
@@ -143,6 +162,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       text: typedText(`${heading}: ${whose()}`, typedRows(product, entered)),
       below: [...productTroubles(settled), ...snippetBlocks(entered, announce)],
       details: productDetails(product, entered, settled, shown!.units.time),
+      outdated: shown!.outdated,
       choices: typeable() ? (name) => choicesOf(product, name) : null,
     });
   }
@@ -191,6 +211,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       text,
       below: [h("p", { class: "hint" }, formulaLine(inForm, entry))],
       details: [],
+      outdated: shown!.outdated,
       choices: typeable() ? () => [] : null,
     });
   }
@@ -205,20 +226,33 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     getProduct(id).then(
       (product) => {
         if (mine?.product !== id) return;
+        trouble.hidden = true;
         about.show(product);
         today.setProduct(product);
       },
-      (error: unknown) => complain(error),
+      (error: unknown) => {
+        complain(error);
+        later(error, () => mine?.product === id && showProduct());
+      },
     );
   }
 
   function showTodays(): void {
     const baseline = shown && givenBaseline(shown.request);
     if (baseline?.product === undefined || baseline.product !== mine?.product) return;
-    getProduct(baseline.product).then((product) => {
-      today.setProduct(product);
-      today.load(baseline);
-    }, complain);
+    const { job } = shown!;
+    getProduct(baseline.product).then(
+      (product) => {
+        if (shown?.job.id !== job.id) return;
+        trouble.hidden = true;
+        today.setProduct(product);
+        today.load(baseline);
+      },
+      (error: unknown) => {
+        complain(error);
+        later(error, () => shown?.job.id === job.id && showTodays());
+      },
+    );
   }
 
   function showRedesign(): void {
@@ -252,9 +286,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     const controller = tried ?? entry?.controller;
     const implement = implementOf(mine);
     if (!shown || !entry || !controller || !implement) {
-      calls.drop();
-      asked = "";
-      answer.setBusy(false);
+      dropQuestion();
       if (shown && entry) showForm();
       return;
     }
@@ -270,7 +302,9 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
         (product) => {
           if (asked === key) showTyped(product, known, entry);
         },
-        (error: unknown) => answer.complain(["Nothing to type", ""], firstFault(error)),
+        (error: unknown) => {
+          if (asked === key) fail(error);
+        },
       );
       return;
     }
@@ -308,7 +342,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     if (request) await work(redesign, withImplement(request, implementOf(mine)));
   }
 
-  async function designBesideToday(settings: Record<string, SettingValue> | undefined): Promise<void> {
+  async function designWithToday(settings: Record<string, SettingValue> | undefined): Promise<void> {
     const request = shown?.request;
     const implement = implementOf(mine);
     if (!request || !mine) return;
@@ -338,27 +372,38 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     showMine();
   }
 
+  function takeMine({ request, units }: Shown): void {
+    mine = mineOfRequest(request.implement, inUnits(mine, units));
+    picker.set(mine);
+    nameMine();
+    showMine();
+  }
+
+  /** Settings that were typed into another product than the chosen one, such as those of a link. */
+  function bringsProduct({ implement: before }: TuningRequest, { implement }: TuningRequest): boolean {
+    return implement?.product !== undefined && !sameImplement(implement, before) && !sameImplement(implement, implementOf(mine));
+  }
+
   return {
     answer: answer.element,
     below: [code.element, about.element],
     show(next) {
-      const sameJob = shown?.job.id === next.job.id;
-      if (!sameJob || shown?.index !== next.index) tried = null;
+      const before = shown;
+      const sameJob = before?.job.id === next.job.id;
+      if (!sameJob || before?.index !== next.index) tried = null;
       shown = next;
       if (!sameJob) {
-        mine = mineOfRequest(next.request.implement, inUnits(mine, next.units));
         picker.setUnits(next.units);
         picker.setOutput(next.result.model?.fit?.u ?? next.request.record?.u ?? []);
-        picker.set(mine);
-        nameMine();
-        showMine();
+        takeMine(next);
         showTodays();
-      }
+      } else if (bringsProduct(before.request, next.request)) takeMine(next);
       showCode();
       update();
     },
     move(next) {
       shown = next;
+      dropQuestion();
       const entry = next.result.controllers[next.index];
       const implement = implementOf(mine);
       if (!implement) return showForm();
@@ -375,6 +420,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     dispose() {
       leave();
       calls.drop();
+      shown = null;
       code.dispose();
     },
   };

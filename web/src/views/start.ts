@@ -378,8 +378,8 @@ export function startView(store: Store, events: StartEvents): StartView {
   function address(): { plant: string; values: Record<string, string> } | null {
     if (loop === "record" || loop === "ultimate") return null;
     const { form, values } = loop === "equations" ? { form: "nonlinear", values: equations.typed() } : model.typed();
-    const { "today.typed": _typed, "today.record": _record, ...told } = loopTexts();
-    return { plant: form, values: { ...values, ...(told["today.form"] === "ideal" ? { ...told, "today.form": "" } : told) } };
+    const { "today.typed": _typed, "today.record": _record, ...typed } = loopTexts();
+    return { plant: form, values: { ...values, ...(typed["today.form"] === "ideal" ? { ...typed, "today.form": "" } : typed) } };
   }
 
   function load(request: TuningRequest, example = false): void {

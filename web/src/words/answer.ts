@@ -2,6 +2,8 @@
 import type { AsEntered, Entry, Product, SettingValue } from "../api/types.ts";
 import { formatSetting } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
+import type { ExplainedName } from "./explained.ts";
+import { explanationOf } from "./explanation_of.ts";
 import { typedRows } from "./products.ts";
 import { settingsOf } from "./settings.ts";
 import type { Setting, SettingsForm } from "./settings.ts";
@@ -17,6 +19,8 @@ export interface AnswerRow {
   today: string;
   /** Range, step and remark, as details. */
   about: string;
+  /** The explanation of its meaning, if there is one. */
+  explains: ExplainedName | undefined;
 }
 
 /** A part that the controller does not have, such as integral action. */
@@ -41,6 +45,7 @@ export function formRows(entry: Entry, today: Entry | undefined, form: SettingsF
     unit: setting.value === null ? "" : setting.unit,
     today: todays(setting.name),
     about: "",
+    explains: explanationOf(setting.name),
   }));
 }
 
@@ -48,13 +53,14 @@ const shownValue = ({ value }: Setting): string => (value === null ? OFF : forma
 
 /** The rows of the product's own list. `today`: its settings by name. */
 export const productRows = (product: Product, entered: AsEntered, today: Record<string, SettingValue>): AnswerRow[] =>
-  typedRows(product, entered).map(({ name, label, value, unit, about }) => ({
+  typedRows(product, entered).map(({ name, label, value, unit, about, explains }) => ({
     name,
     label,
     value,
     unit,
     today: name in today ? String(today[name]) : "",
     about,
+    explains,
   }));
 
 /** Tab-separated, with a head: for a spreadsheet. */

@@ -1,6 +1,6 @@
 // The comparison as data: its rows in order, its columns with their figures. No DOM.
 import type { Entry, Result, WhyNull } from "../api/types.ts";
-import { besideLimit } from "./figures.ts";
+import { limitNote } from "./figures.ts";
 import type { ExplainedName } from "./explained.ts";
 import { formatNumber, formatPercent, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
@@ -139,7 +139,7 @@ export function comparisonColumns(units: UnitNames): ComparisonColumn[] {
       true,
       (entry) => {
         const reached = of(setpoint, "overshoot_percent", NOT_GIVEN, formatPercent)(entry);
-        return { ...reached, text: reached.text && reached.text + besideLimit(entry) };
+        return { ...reached, text: reached.text && reached.text + limitNote(entry) };
       },
     ),
     column(

@@ -1,7 +1,7 @@
 // The three facts next to a verdict: robustness, load, set point; of the implemented loop where it is known.
 import type { Entry, Figures } from "../api/types.ts";
 import type { ExplainedName } from "./explained.ts";
-import { besideLimit } from "./figures.ts";
+import { limitNote } from "./figures.ts";
 import { formatNumber, formatPercent, product, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
@@ -11,7 +11,7 @@ export interface Fact {
   about: ExplainedName;
   value: string;
   /** The reference of the value: a limit, or today's; "" if there is none. */
-  beside: string;
+  reference: string;
 }
 
 const numberOf = (part: unknown, name: string): number | null => {
@@ -26,16 +26,16 @@ export function factsOf(entry: Entry, today: Entry | undefined, units: UnitNames
   const load = numberOf(performance?.load, "IAE");
   const before = today && today !== entry ? numberOf((today.implemented ?? today).performance?.load, "IAE") : null;
   const overshoot = numberOf(performance?.setpoint, "overshoot_percent");
-  const facts: { label: string; about: ExplainedName; number: number | null; text: (value: number) => string; beside: string }[] = [
-    { label: worst === null ? "Ms" : "Worst Ms", about: worst === null ? "Ms" : "worst_Ms", number: worst ?? numberOf(robustness, "Ms"), text: formatNumber, beside: "" },
+  const facts: { label: string; about: ExplainedName; number: number | null; text: (value: number) => string; reference: string }[] = [
+    { label: worst === null ? "Ms" : "Worst Ms", about: worst === null ? "Ms" : "worst_Ms", number: worst ?? numberOf(robustness, "Ms"), text: formatNumber, reference: "" },
     {
       label: withUnit("Load IAE", product(units.y, units.time)),
       about: "IAE",
       number: load,
       text: formatNumber,
-      beside: before === null ? "" : `today ${formatNumber(before)}`,
+      reference: before === null ? "" : `today ${formatNumber(before)}`,
     },
-    { label: "Overshoot (%)", about: "overshoot_percent", number: overshoot, text: formatPercent, beside: besideLimit(entry).replaceAll(/[()]/g, "").trim() },
+    { label: "Overshoot (%)", about: "overshoot_percent", number: overshoot, text: formatPercent, reference: limitNote(entry).replaceAll(/[()]/g, "").trim() },
   ];
-  return facts.flatMap(({ label, about, number, text, beside }) => (number === null ? [] : [{ label, about, value: text(number), beside }]));
+  return facts.flatMap(({ label, about, number, text, reference }) => (number === null ? [] : [{ label, about, value: text(number), reference }]));
 }

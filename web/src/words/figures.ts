@@ -44,7 +44,7 @@ const NOT_GIVEN = "The service gave no figure.";
 /** "12.5 (asked 5.00)" if the loop exceeds the limit of its design. */
 function overshoot(entry: Entry): FigureValue {
   const reached = numeric(entry.performance?.["setpoint"], "overshoot_percent", NOT_GIVEN);
-  return { ...reached, text: reached.text && reached.text + besideLimit(entry) };
+  return { ...reached, text: reached.text && reached.text + limitNote(entry) };
 }
 
 /** The design's limit on the overshoot, in percent, if the verdict says that the loop exceeds it. */
@@ -60,7 +60,7 @@ function missedOvershoot(entry: Entry): { who: "asked" | "design"; percent: numb
 export const missesOvershoot = (entry: Entry): boolean => missedOvershoot(entry) !== null;
 
 /** " (asked 5.00)" after an overshoot above the limit of the request, " (design 5.00)" above the method's own; else "". */
-export function besideLimit(entry: Entry): string {
+export function limitNote(entry: Entry): string {
   const missed = missedOvershoot(entry);
   return missed === null ? "" : ` (${missed.who} ${formatNumber(missed.percent)})`;
 }
@@ -171,6 +171,15 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
         },
         controller("b", "b", "set-point weight of P", "1 by default"),
         controller("c", "c", "set-point weight of D", "0 by default"),
+        {
+          label: withUnit("Longest sample time", units.time),
+          meaning: "of a program: Ms stays within 5 %",
+          about: "longest_sample_time",
+          value: ({ longest_sample_time: longest }) =>
+            typeof longest === "number"
+              ? { text: formatNumber(longest), why: "" }
+              : missing(longest === null ? "With no sample time Ms stays within 5 %." : "It is not computed for these settings."),
+        },
         {
           label: "Action",
           meaning: "sign of the gain",

@@ -13,7 +13,7 @@ function typedWords({ typing }: ControllerInRecord, product: Product | null): st
   return written.length > 0 ? written.join(", ") : null;
 }
 
-/** "Kp 0.800 ± 0.010, Ti 150.0 ± 2.0 s": in the ideal form. A part that is not told from none is left out. */
+/** "Kp 0.800 ± 0.010, Ti 150.0 ± 2.0 s": in the ideal form. A part that is zero within its error is left out. */
 function idealWords({ controller, standard_errors }: IdentifiedController, time: string): string {
   const written = (["Kp", "Ti", "Td"] as const).flatMap((name) => {
     const value = (controller as Partial<Record<string, unknown>>)[name];
@@ -25,7 +25,11 @@ function idealWords({ controller, standard_errors }: IdentifiedController, time:
 }
 
 /** The settings with their standard errors, and remarks about them. `product`: the one that was asked for. */
-export function foundWords(found: ControllerInRecord, product: Product | null, time: string): string {
+export function foundWords(
+  found: ControllerInRecord & { identified: IdentifiedController },
+  product: Product | null,
+  time: string,
+): string {
   const { identified, not_typed } = found;
   const settings = typedWords(found, product) ?? idealWords(identified, time);
   const remarks = [...identified.warnings.map(({ detail }) => detail), ...(not_typed ? [not_typed] : [])];

@@ -1,5 +1,6 @@
 // The service's description of its methods, as text to read and to search. Independent of any method.
 import type { Method, Schema } from "../api/types.ts";
+import { hasWords } from "./search_text.ts";
 
 export interface OptionRow {
   name: string;
@@ -63,13 +64,6 @@ function interval({ minimum, maximum, exclusiveMinimum, exclusiveMaximum }: Sche
 
 /** True if the description of the method contains every search word. */
 export function mentions(method: Method, search: string): boolean {
-  const text = [method.id, method.title, method.source, method.needs, method.validity, method.formula]
-    .join(" ")
-    .replaceAll("_", " ")
-    .toLowerCase();
-  return search
-    .toLowerCase()
-    .replaceAll("_", " ")
-    .split(/\s+/)
-    .every((word) => text.includes(word));
+  const { id, title, source, needs, validity, formula } = method;
+  return hasWords([id, title, source, needs, validity, formula].join(" "), search);
 }

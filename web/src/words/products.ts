@@ -1,18 +1,18 @@
 // Products in words: results of a search, the rows to type, the implemented loop next to the ideal one, evidence.
 import type { AsEntered, Entry, Evidence, Implemented, Need, Notice, Product, ProductSummary } from "../api/types.ts";
+import type { ExplainedName } from "./explained.ts";
+import { explanationOfParameter } from "./explanation_of.ts";
+import { plainText, searchText, searchWords } from "./search_text.ts";
 import { DASH, formatNumber, formatParameter, formatPercent } from "./numbers.ts";
-
-/** Lower case, without the signs that separate words in names. */
-const plain = (text: string): string => text.toLowerCase().replaceAll(/[^a-z0-9]+/g, " ");
 
 /** Products with every typed word in maker, name, family, id or parameters; first those whose name begins with it, then by
     maker. */
 export function findProducts(products: readonly ProductSummary[], typed: string): ProductSummary[] {
-  const wanted = plain(typed).split(" ").filter(Boolean);
+  const wanted = searchWords(typed);
   const ranked = products.flatMap((product) => {
-    const name = ` ${plain(`${product.maker} ${product.name}`)}`;
-    const known = `${name} ${plain(product.families.join(" "))}`;
-    const all = `${known} ${plain(product.id)} ${plain(product.parameters.join(" "))}`;
+    const name = searchText(`${product.maker} ${product.name}`);
+    const known = name + searchText(product.families.join(" "));
+    const all = known + searchText(product.id) + searchText(product.parameters.join(" "));
     const ranks = [
       wanted.every((word) => name.includes(` ${word}`)),
       wanted.every((word) => known.includes(` ${word}`)),
@@ -29,7 +29,7 @@ export function findProducts(products: readonly ProductSummary[], typed: string)
 
 /** "Emerson DeltaV PID, FORM Series"; a maker whose name is part of the product's is not repeated. */
 export const productTitle = ({ maker, name }: Pick<ProductSummary, "maker" | "name">): string =>
-  plain(name).startsWith(plain(maker).trim()) ? name : `${maker} ${name}`;
+  plainText(name).startsWith(plainText(maker)) ? name : `${maker} ${name}`;
 
 const NEED_WORDS: Record<Need, string> = {
   y_span: "the range of the measurement",
@@ -57,6 +57,8 @@ export interface TypedRow {
   unit: string;
   /** Range, step and remark, as details. */
   about: string;
+  /** The explanation of its meaning, if there is one. */
+  explains: ExplainedName | undefined;
 }
 
 /** In the order of the product's own list; other settings, such as the direction, after it. */
@@ -73,6 +75,7 @@ export function typedRows(product: Product, entered: AsEntered): TypedRow[] {
       value: entered.as_typed[name]!,
       unit: entered.units[name] ?? parameter?.unit ?? "",
       about: [parameter ? rangeWords(parameter) : (product.action.text ?? ""), parameter?.remark].filter(Boolean).join("; "),
+      explains: parameter ? explanationOfParameter(parameter) : name === product.action.name ? "action" : undefined,
     };
   });
 }

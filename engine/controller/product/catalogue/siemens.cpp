@@ -96,6 +96,11 @@ Product pid_compact() {
     };
 }
 
+// ---- FB41
+
+/// The largest TIME: T#24D_20H_31M_23S_647MS.
+constexpr double kMaxTime_s = 2147483.647;
+
 Product fb41() {
     return {
         .id = "siemens_fb41_cont_c",
@@ -113,7 +118,7 @@ Product fb41() {
                  .unit = "s",
                  .role = ParameterRole::integral,
                  .term = kTi,
-                 .range = {0.001, kUnbounded},
+                 .range = {0.001, kMaxTime_s},
                  .resolution = 0.001,
                  .off = 0.0,
                  .remark = "a TIME, in steps of 1 ms"},
@@ -122,14 +127,14 @@ Product fb41() {
                  .unit = "s",
                  .role = ParameterRole::derivative,
                  .term = kTd,
-                 .range = {0, kUnbounded},
+                 .range = {0, kMaxTime_s},
                  .resolution = 0.001},
                 {.name = "TM_LAG_s",
                  .label = "TM_LAG",
                  .unit = "s",
                  .role = ParameterRole::filter,
                  .term = kTf,
-                 .range = {0, kUnbounded},
+                 .range = {0, kMaxTime_s},
                  .resolution = 0.001},
                 fixed_choice("P_SEL", "P_SEL", true, "FALSE switches the proportional part off."),
                 {.name = "I_SEL",
@@ -161,13 +166,14 @@ Product fb41() {
                       "block",
                       "transfer function with TM_LAG, of a third party",
                       "names, types and defaults of the parameters, of a third party",
-                      "spelling of times with decimals in SCL"},
+                      "spelling of times with decimals in SCL", "range of a TIME"},
              .unverified = {"Siemens' own text about the block", "limits of TM_LAG against CYCLE",
                             "TI = 0 as integral off"},
              .sources = {"VIPA SPEED7 manual pp. 839-840 (call compatible FB41)",
                          "industrialmonitordirect.com, Siemens FB41 TM_LAG (third party)",
                          "blog.csdn.net 112944724, table of the parameters of FB41 (third party)",
                          "S7-SCL manual, simple time format (TIME#45.12M, T#300MS)",
+                         "S7-1200 system manual A5E02486680, 4.4.4 (TIME: 32 bits with a sign, in ms)",
                          "SIMATIC PID Control C79000-G7076-C516 (its text could not be read)"}},
         .example = of_design_a({{"GAIN", 3.0},
                                 {"TI_s", 120.0},

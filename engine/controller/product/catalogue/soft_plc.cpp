@@ -5,6 +5,8 @@ namespace tunewright::product {
 namespace {
 
 constexpr double kInMilliseconds = 1000;
+/// The largest TIME: T#49D17H2M47S295MS.
+constexpr double kMaxTime_ms = 4294967295;
 
 Parameter ms_time_of(std::string_view name, std::string_view label, ParameterRole role, Term term) {
     return {.name = name,
@@ -12,7 +14,7 @@ Parameter ms_time_of(std::string_view name, std::string_view label, ParameterRol
             .unit = "ms",
             .role = role,
             .term = times(kInMilliseconds, term),
-            .range = {role == ParameterRole::integral ? 1.0 : 0.0, kUnbounded},
+            .range = {role == ParameterRole::integral ? 1.0 : 0.0, kMaxTime_ms},
             .resolution = kWholeNumber};
 }
 
@@ -51,11 +53,13 @@ Product beckhoff() {
                       .sample_time_text = "tCtrlCycleTime, usually the period of the task"},
         .traps = {"tTd is the filter, tTv the derivative."},
         .evidence = {.level = EvidenceLevel::partly,
-                     .read = {"names and units of the parameters", "additive form", "both switches and their defaults"},
+                     .read = {"names and units of the parameters", "additive form", "both switches and their defaults",
+                              "range of a TIME"},
                      .unverified = {"transfer function", "default of tTd", "discrete algorithm", "sign of fKp"},
                      .sources = {"infosys.beckhoff.com tf4100_tc3_controller_toolbox/245435787",
                                  "infosys.beckhoff.com tcplclib_tc2_utilities/34976395",
-                                 "infosys.beckhoff.com tf8400_tc3_mtp_runtime/15140780555"}},
+                                 "infosys.beckhoff.com tf8400_tc3_mtp_runtime/15140780555",
+                                 "infosys.beckhoff.com tc3_plc_intro/12189021579"}},
         .example = of_design_a({{"fKp", 1.5},
                                 {"tTn_ms", 120000.0},
                                 {"tTv_ms", 20000.0},

@@ -463,7 +463,7 @@ bool Sweep::stable_at_low_gain() const {
     });
 }
 
-void Sweep::tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const {
+void Sweep::find_stability(const LoopGains& c, std::vector<GainGap>& gaps) const {
     if (!std::ranges::all_of(curves_, [](const Curve& curve) { return curve.phase_at_low.has_value(); })) return;
     std::vector<GainCourse> courses;  // for every curve, computed at the first use
     for (GainGap& gap : gaps) {
@@ -490,7 +490,7 @@ std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
         if (problem_.limits.Mks) forbid_activity(curve, c, forbidden);
     }
     auto gaps = gaps_between(forbidden);
-    tell_stability(c, gaps);
+    find_stability(c, gaps);
     return gaps;
 }
 

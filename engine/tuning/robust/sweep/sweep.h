@@ -113,7 +113,7 @@ private:
     void forbid_below(const Curve& curve, const LoopGains& c, std::vector<GainGap>& forbidden) const;
     struct GainCourse;
     bool stable_at_low_gain() const;
-    void tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const;
+    void find_stability(const LoopGains& c, std::vector<GainGap>& gaps) const;
     std::complex<double> worst_phase(const Curve& curve, std::complex<double> L, double omega) const;
     std::array<double, 3> gradient(const Curve& curve, ConstraintKind kind, const LoopGains& c, double omega) const;
 

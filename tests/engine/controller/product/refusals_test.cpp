@@ -64,6 +64,34 @@ TEST(ProductRefusals, OnTheBorderOfRealZerosTheSeriesFormIsExact) {
     EXPECT_NEAR(exact->realised.Td, 20, 1e-12);
 }
 
+// 32 bits in milliseconds, with a sign at Siemens and without one at Beckhoff.
+TEST(ProductRefusals, ATimeThatOverflowsItsTypeIsRefused) {
+    struct Bound {
+        const char* product;
+        const char* gain;
+        const char* time;
+        double max_ms, per_ms;
+        const char* range;
+    };
+    for (const Bound& bound : {Bound{"siemens_fb41_cont_c", "GAIN", "TI_s", 2147483647, 1e-3, "0.001 to 2147483.647 s"},
+                               Bound{"beckhoff_fb_ctrl_pid", "fKp", "tTn_ms", 4294967295, 1, "1 to 4294967295 ms"}}) {
+        SCOPED_TRACE(bound.product);
+        IdealPid slow = kDesign;
+        slow.Ti = bound.max_ms / 1000;
+        const auto largest = to_settings(product_of(bound.product), slow, kContext, false);
+        ASSERT_TRUE(largest) << largest.error().message;
+        EXPECT_DOUBLE_EQ(number(largest->settings, bound.time), bound.max_ms * bound.per_ms);
+        slow.Ti = (bound.max_ms + 1) / 1000;
+        const Error error = refused(bound.product, slow);
+        EXPECT_EQ(error.kind, ErrorKind::not_representable);
+        EXPECT_THAT(error.message, HasSubstr(std::string("but it accepts ") + bound.range));
+        EXPECT_DOUBLE_EQ(number(nearest(bound.product, slow).settings, bound.time), bound.max_ms * bound.per_ms);
+        EXPECT_THAT(
+            not_read(bound.product, {{bound.gain, 1.0}, {bound.time, (bound.max_ms + 1) * bound.per_ms}}).message,
+            HasSubstr(std::string("it must be ") + bound.range));
+    }
+}
+
 TEST(ProductRefusals, AValueOutsideItsRangeIsRefusedWithTheNearest) {
     IdealPid weak = kDesign;
     weak.Kp = 0.01;

@@ -38,9 +38,9 @@ TEST(ProductTraps, BackCalculationOfAPIHasItsIntegralTime) {
 
 TEST(ProductTraps, NotesOnHowSettingsWereComputedAreToldFromWhatTheProductCannotBe) {
     for (const char* code : {"action", "clock", "default", "discretisation", "outside-the-twin", "unverified"})
-        EXPECT_FALSE(tells_deviation({code, ""})) << code;
+        EXPECT_FALSE(is_deviation({code, ""})) << code;
     for (const char* code : {"filter", "setpoint-weights", "rounding", "nearest", "limit", "a-code-of-tomorrow"})
-        EXPECT_TRUE(tells_deviation({code, ""})) << code;
+        EXPECT_TRUE(is_deviation({code, ""})) << code;
 }
 
 TEST(ProductTraps, WithoutIntegralActionItsTimeIsNought) {

@@ -63,6 +63,43 @@ for (const [title, dy, moved] of [
     });
   });
 
+/** One finger: as the mouse, but the browser may take its movement for scrolling. */
+async function swipe(page, from, dx, dy) {
+  const client = await page.context().newCDPSession(page);
+  const touch = (type, touchPoints) => client.send("Input.dispatchTouchEvent", { type, touchPoints });
+  await touch("touchStart", [from]);
+  for (let step = 1; step <= 12; step += 1) await touch("touchMove", [{ x: from.x + (dx * step) / 12, y: from.y + (dy * step) / 12 }]);
+  await touch("touchEnd", []);
+  await client.detach();
+}
+
+const scrolled = (page) => page.evaluate(() => document.scrollingElement.scrollTop);
+
+for (const [title, dx, dy, moved] of [
+  ["Nyquist curve of L", -14, 8, /[?&]Ms=/],
+  ["Set-point step", 0, -12, /overshoot=/],
+  ["Load step at the plant input", 0, -12, /[?&]Ms=/],
+])
+  test(`by touch the ${title} is dragged at its handle, and the page scrolls elsewhere`, async () => {
+    await withPage(PLANT, { width: 800, height: 1100, hasTouch: true }, async (page) => {
+      await openDesign(page);
+      const handle = await handleOf(page, title);
+      const before = await scrolled(page);
+      await swipe(page, handle, dx, dy);
+      await page.waitForURL(moved);
+      assert.equal(await scrolled(page), before, "the page stays while a handle is dragged");
+      await page.getByRole("button", { name: "Undo" }).click();
+      await page.waitForFunction(() => !location.hash.includes("?"));
+      const canvas = plot(page, title).locator("svg.canvas");
+      await canvas.evaluate((element) => element.scrollIntoView({ block: "center" }));
+      const box = await canvas.boundingBox();
+      const start = await scrolled(page);
+      await swipe(page, { x: box.x + box.width - 4, y: box.y + box.height - 4 }, 0, -150);
+      await page.waitForFunction((from) => document.scrollingElement.scrollTop !== from, start);
+      assert.ok(!page.url().includes("?"), "nothing was dragged");
+    });
+  });
+
 test("elsewhere on the plot a drag still zooms, and a fixed rule has no handle", async () => {
   await withPage(PLANT, { height: 1400 }, async (page) => {
     await page.getByText(/^Compare with/).click();

@@ -62,6 +62,33 @@ test("every product is found by its name, and by the family that its users call 
   });
 });
 
+test("a name is found in each spelling, and a product first under its family, here and in the field of the controller", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await page.waitForLoadState("networkidle");
+    const picker = page.getByRole("combobox", { name: "Maker and product" });
+    const listed = page.getByRole("listbox", { name: "Maker and product" }).getByRole("option");
+    const lists = [];
+    for (const [words, first] of [["ControlLogix", /Rockwell/], ["Step 7", /FB41|CONT_C/], ["TIA", /PID_Compact/]]) {
+      await find(page, words);
+      assert.match(await options(page).filter({ hasText: "controller" }).first().innerText(), first, words);
+      await page.keyboard.press("Escape");
+      await dialog(page).waitFor({ state: "hidden" });
+      await picker.fill(words);
+      assert.match(await listed.first().innerText(), first, words);
+      await picker.press("Escape");
+    }
+    for (const words of ["Haegglund", "Hagglund", "Hägglund"]) {
+      await find(page, words);
+      lists.push(await options(page).allInnerTexts());
+      await page.keyboard.press("Escape");
+      await dialog(page).waitFor({ state: "hidden" });
+    }
+    assert.ok(lists[0].length > 0);
+    assert.deepEqual(lists[1], lists[0]);
+    assert.deepEqual(lists[2], lists[0]);
+  });
+});
+
 test("a controller becomes that of the design on the screen", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);

@@ -1,5 +1,6 @@
 // The settings to enter: the chosen controller in the user's product or in a textbook form, with today's values.
 import { breakable, h, say, uniqueId } from "../../dom.ts";
+import { explained } from "../../reach/explanation.ts";
 import type { AnswerRow } from "../../words/answer.ts";
 import { tableText } from "../../words/answer.ts";
 import { copyButton } from "../copy.ts";
@@ -16,6 +17,8 @@ export interface Answer {
   below: HTMLElement[];
   /** The part that is folded away. */
   details: HTMLElement[];
+  /** A newer answer is on its way. */
+  outdated: boolean;
   /** Other values can be typed in the place of these. `choices`: by a row's name; empty: a number. */
   choices: ((name: string) => string[]) | null;
 }
@@ -52,6 +55,8 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
   let made = "";
   /** The values are fields in which others can be typed. */
   let typing = false;
+  /** Typed values that are being converted. */
+  let converting = 0;
   const spoken = h("span", { class: "visually-hidden" });
   const visible = h("span", {});
   const title = h("h2", { id: uniqueId("answer") }, visible, spoken);
@@ -113,8 +118,10 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
   function typed(): void {
     if (!shown) return;
     const texts = shown.rows.map(({ name, value }, index) => [name, lines[index]!.text() ?? value] as const);
+    for (const line of lines) line.handIn();
     if (texts.every(([, text], index) => text === shown!.rows[index]!.value)) return refuse("");
-    void onType(Object.fromEntries(texts));
+    converting += 1;
+    void onType(Object.fromEntries(texts)).finally(() => (converting -= 1));
   }
 
   function refuse(sentence: string): void {
@@ -124,10 +131,10 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
 
   function showRows(rows: readonly AnswerRow[]): void {
     const withToday = rows.some(({ today }) => today !== "");
-    const wanted = JSON.stringify([withToday, typing, rows.map(({ label, about }) => [label, about])]);
+    const wanted = JSON.stringify([withToday, typing, rows.map(({ label, about, explains }) => [label, about, explains])]);
     if (wanted !== made) make(rows, withToday);
     made = wanted;
-    rows.forEach((row, index) => lines[index]!.write(row));
+    rows.forEach((row, index) => lines[index]!.write(row, converting > 0 || (shown?.outdated ?? false)));
   }
 
   function setTitle([first, second]: Answer["heading"]): void {
@@ -174,7 +181,10 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
 
 interface RowElements {
   element: HTMLElement;
-  write(row: AnswerRow): void;
+  /** `keep`: the answer is older than what was handed in; a text that was not handed in yet stays in any case. */
+  write(row: AnswerRow, keep: boolean): void;
+  /** The text of its field is on its way to the service. */
+  handIn(): void;
   /** The text of its field; null: it has none. */
   text(): string | null;
 }
@@ -189,28 +199,34 @@ interface RowOptions {
   onType(): void;
 }
 
-function rowElements({ label, about }: AnswerRow, options: RowOptions): RowElements {
+function rowElements({ label, about, explains }: AnswerRow, options: RowOptions): RowElements {
   const before = h("td", { class: "today" });
   const field = fieldOf(label, options);
   const cell = h("td", { class: "value" }, field);
   const dimension = h("td", { class: "unit" });
+  /** The text was changed since it was written: by the user, and handed in or not. */
+  let [changed, handedIn] = [false, true];
+  field?.addEventListener("input", () => ([changed, handedIn] = [true, false]));
   const copy = copyButton({ label: "Copy", spoken: `Copy ${label}`, look: "quiet", text: options.current }, options.announce);
   return {
     element: h(
       "tr",
       { title: about || null },
-      h("th", { scope: "row" }, breakable(label)),
+      h("th", { scope: "row" }, explains ? explained(explains, breakable(label)) : breakable(label)),
       options.withToday ? before : "",
       cell,
       dimension,
       h("td", {}, copy),
     ),
-    write({ value, unit, today }) {
+    write({ value, unit, today }, keep) {
       say(before, today);
-      if (field) field.value = value;
-      else say(cell, value);
       say(dimension, unit);
+      if (!field) return say(cell, value);
+      if (!handedIn || (changed && keep)) return;
+      field.value = value;
+      changed = false;
     },
+    handIn: () => (handedIn = true),
     text: () => field?.value ?? null,
   };
 }

@@ -11,6 +11,8 @@ import type { Live } from "../../live/live.ts";
 import { tiedAt } from "../../live/point.ts";
 import type { Point } from "../../live/point.ts";
 import type { MovableSlider } from "../grips.ts";
+import { explained } from "../../reach/explanation.ts";
+import { explanationOf } from "../../words/explanation_of.ts";
 import { missesOvershoot } from "../../words/figures.ts";
 import { formatNumber } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
@@ -97,9 +99,11 @@ export function controlsCard(live: Live): ControlsCard {
   }
 
   function make(spec: SliderSpec, modify: Modify, home: (spec: SliderSpec) => void): SliderControl {
+    const about = explanationOf(spec.id);
     const made = slider(
       {
         label: spec.label,
+        ...(about ? { explain: (text: HTMLElement) => explained(about, text) } : {}),
         unit: spec.unit,
         log: spec.log,
         ...(spec.step || spec.log ? { step: spec.step ?? RELATIVE_STEP } : {}),

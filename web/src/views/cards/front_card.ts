@@ -1,5 +1,5 @@
 // The frontier below the sliders: the design is a point on it that can be dragged.
-import { besideOf, frontOf } from "../../api/live.ts";
+import { referenceOf, frontOf } from "../../api/live.ts";
 import type { FrontTerms } from "../../api/live.ts";
 import type { Entry, Frontier, Plant } from "../../api/types.ts";
 import { frontFrame } from "../../charts/front.ts";
@@ -75,12 +75,12 @@ export function frontCard(
     if (kind) take(kind, await frontOf(plant, { controller: kind, ...terms }, ending));
     if (ending.aborted) return;
     const others = (["PID", "PI"] as const).filter((controller) => controller !== kind);
-    const beside = await besideOf(
+    const reference = await referenceOf(
       plant,
       others.map((controller) => ({ controller, ...terms })),
       false,
     );
-    others.forEach((controller, index) => take(controller, beside.fronts[index] ?? null));
+    others.forEach((controller, index) => take(controller, reference.fronts[index] ?? null));
   }
 
   async function askRules(): Promise<void> {
@@ -88,9 +88,9 @@ export function frontCard(
     if (!subject) return;
     rulesButton.disabled = true;
     try {
-      const beside = await besideOf(subject.plant, [], true);
+      const reference = await referenceOf(subject.plant, [], true);
       if (about !== ruled) return;
-      rules = beside.rules;
+      rules = reference.rules;
       rulesButton.hidden = true;
       draw();
     } finally {

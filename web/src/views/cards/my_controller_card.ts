@@ -146,16 +146,22 @@ export function myControllerCard(
     output.element.hidden = !needs("u_span");
   }
 
+  /** A typed name that is not in the list. */
+  function readUnmatched(): FieldError[] {
+    const typed = search.unmatched();
+    if (typed === "") return [];
+    const kept = chosen?.name ?? (forms ? formTitle(form) : "");
+    const next = kept ? `${kept} is still chosen: choose another one from the list, or press Escape` : "Choose one from the list, or clear the field";
+    return [{ pointer: "/implement/product", detail: `There is no controller "${typed}" in the list. ${next}.` }];
+  }
+
   function read(): { mine: MyController | null; errors: FieldError[] } {
-    if (!chosen) {
-      const typed = search.unmatched();
-      const detail = `There is no controller "${typed}" in the list. Choose one from the list, or clear the field.`;
-      return { mine: null, errors: typed ? [{ pointer: "/implement/product", detail }] : [] };
-    }
+    const unmatched = readUnmatched();
+    if (!chosen) return { mine: null, errors: unmatched };
     const [y, u] = [measurement.read(), output.read()];
     const typed = sampling.input.value.trim();
     const period = typed === "" ? null : parseNumber(typed, "Sample time");
-    const faults = [...(measurement.element.hidden ? [] : y.errors), ...(output.element.hidden ? [] : u.errors)];
+    const faults = [...unmatched, ...(measurement.element.hidden ? [] : y.errors), ...(output.element.hidden ? [] : u.errors)];
     if (period && !period.ok) faults.push({ pointer: "/implement/sample_time", detail: period.sentence });
     else if (period?.ok && !(period.value > 0))
       faults.push({

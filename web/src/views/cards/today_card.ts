@@ -108,7 +108,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   const offer = h("div", { class: "check" }, take, h("label", { for: take.id }, "Use as today's settings"));
   const fromRecord = h("div", { class: "from-record", hidden: true }, said, offer);
   const beginFind = newest();
-  /** What the service was asked last, and its answer: what it refuses is not sent. */
+  /** The last question to the service. */
   let asked: { record: RecordedTest; rest: string } | null = null;
   let sure = false;
   let finding: Promise<void> = Promise.resolve();
@@ -167,7 +167,12 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   const isEmpty = (): boolean =>
     own.isEmpty() && [...slots, filter, delta].every((field) => field.input.value.trim() === "");
 
-  /** Asks once for each record and controller; a refusal takes the choice back. */
+  function none(reason: string): void {
+    said.textContent = `There are no settings from the record. ${reason}`.trimEnd();
+    take.checked = false;
+  }
+
+  /** Asks once for each record and controller; without settings the choice is taken back. */
   async function find(): Promise<void> {
     const implement = implementOf(mine);
     const units = unitsOf(() => true);
@@ -182,14 +187,17 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       const found = await controllerInRecord(question.record, implement, units);
       const product = implement ? await getProduct(implement.product) : null;
       if (!isNewest()) return;
-      sure = true;
-      said.textContent = foundWords(found, product, time.input.value.trim() || "s");
-      offer.hidden = false;
-      if ((found.identified.certain ?? found.identified.warnings.length === 0) && isEmpty() && !typed.has(BASELINE)) take.checked = true;
+      const { identified } = found;
+      if (!identified) none(found.not_identified ?? "");
+      else {
+        sure = true;
+        said.textContent = foundWords({ ...found, identified }, product, time.input.value.trim() || "s");
+        offer.hidden = false;
+        if (identified.certain && isEmpty() && !typed.has(BASELINE)) take.checked = true;
+      }
     } catch (error) {
       if (!isNewest()) return;
-      said.textContent = `There are no settings from the record. ${sentenceOf(error)}`;
-      take.checked = false;
+      none(sentenceOf(error));
     }
     label();
   }

@@ -51,8 +51,8 @@ export function showVerdict(
   if (doubt) card.append(h("p", { class: "trouble" }, `${doubt} `, h("a", { href: recordAddress }, "Choose the unit")));
 }
 
-const factElement = ({ label, about, value, beside }: Fact): HTMLElement =>
-  h("div", {}, h("dt", {}, explained(about, label)), h("dd", {}, value, beside ? h("small", {}, ` ${beside}`) : ""));
+const factElement = ({ label, about, value, reference }: Fact): HTMLElement =>
+  h("div", {}, h("dt", {}, explained(about, label)), h("dd", {}, value, reference ? h("small", {}, ` ${reference}`) : ""));
 
 /** The headings for kinds of failures. */
 function failedHead(job: Job): string {

@@ -88,7 +88,8 @@ std::string to_type(const Value& entry) {
 
 /// The load IAE of the loop, which verdicts compare: as implemented if that is known.
 const Value* load_of(const Value& entry) {
-    return at(entry, member(entry, "implemented") != nullptr ? "/implemented/performance/load/IAE" : "/performance/load/IAE");
+    return at(entry,
+              member(entry, "implemented") != nullptr ? "/implemented/performance/load/IAE" : "/performance/load/IAE");
 }
 
 /// The same, or the controller with the unit of time: "Kp 0.9; Ti 12 min".
@@ -97,7 +98,8 @@ std::string settings_text(const Value& result, const Value& entry) {
     const Value* controller = at(entry, "/controller");
     if (!out.empty() || controller == nullptr) return out;
     const Value* unit = at(result, "/units/time");
-    const std::string time = unit != nullptr && unit->IsString() ? std::string(text_of(*unit)) : Units{}.time_or_default();
+    const std::string time =
+        unit != nullptr && unit->IsString() ? std::string(text_of(*unit)) : Units{}.time_or_default();
     for (const char* name : {"Kp", "Ki", "Kd", "Ti", "Td"}) {
         const Value* value = member(*controller, name);
         if (value == nullptr || !value->IsNumber()) continue;

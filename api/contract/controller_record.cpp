@@ -65,7 +65,8 @@ const Description<IdentifiedController>& identified_controller_contract() {
             .field("delay", &C::delay, only_answered(number()), "Time from y to the u that answers it in the record.",
                    {.unit = "time"})
             .field("b_known", &C::b_known, boolean(),
-                   "True if the set point moves enough in automatic to tell b = 0 from b = 1; otherwise b and c are not identified.")
+                   "True if the set point moves enough in automatic to tell b = 0 from b = 1; otherwise b and c are "
+                   "not identified.")
             .field("explained", &C::explained, only_answered(number()),
                    "Share of the moves of u that the settings explain, 0 to 1.")
             .field("rows", &C::rows, only_answered(integer(0, 1 << 30)), "Rows used.")

@@ -133,7 +133,8 @@ const Description<OwnStep>& own_step_contract() {
             .field("ramp_rate", &OwnStep::ramp_rate, time, "Rate at which the set point moves; left out: at once.",
                    {.unit = "y/time"})
             .field("hold", &OwnStep::hold, maybe(number({.minimum = 0})),
-                   "Time from the end of the ramp to the load; left out: until the slowest entry rests, at most three times the shortest.",
+                   "Time from the end of the ramp to the load; left out: until the slowest entry rests, at most three "
+                   "times the shortest.",
                    {.unit = "time"})
             .field("load", &OwnStep::load, maybe(object(load_contract())), "The load; left out: none.")
             .field("length", &OwnStep::length, time, "Time that is simulated; left out: until the loop rests.",

@@ -52,8 +52,8 @@ double shortest_ms(const std::function<void()>& part) {
 }
 
 std::string request_of(const Fopdt& plant, int points) {
-    return R"({"plant": {"type": "fopdt", "K": )" + text(plant.K, 17) + R"(, "T": )" + text(plant.T, 17) + R"(, "L": )" +
-           text(plant.L, 17) + R"(}, "tune": [{"method": "robust"}], "evaluate": {"points": )" +
+    return R"({"plant": {"type": "fopdt", "K": )" + text(plant.K, 17) + R"(, "T": )" + text(plant.T, 17) +
+           R"(, "L": )" + text(plant.L, 17) + R"(}, "tune": [{"method": "robust"}], "evaluate": {"points": )" +
            std::to_string(points) + "}}";
 }
 
@@ -143,7 +143,8 @@ int run_request(const char* file, int runs) {
 
 int main(int argc, char** argv) {
     using namespace tunewright::bench;
-    if (argc > 2 && std::string(argv[1]) == "--request") return run_request(argv[2], argc > 3 ? std::atoi(argv[3]) : 20);
+    if (argc > 2 && std::string(argv[1]) == "--request")
+        return run_request(argv[2], argc > 3 ? std::atoi(argv[3]) : 20);
     const int plants = argc > 1 ? std::max(1, std::atoi(argv[1])) : 200;
     Parts parts(argc > 2 ? std::atoi(argv[2]) : 0);
     std::mt19937_64 random(1);

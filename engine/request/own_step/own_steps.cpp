@@ -283,15 +283,15 @@ private:
     void draw(std::vector<RunningLoop>& loops) const {
         std::vector<double> ends;
         for (const RunningLoop& loop : loops)
-            if (loop.whole)
-                ends.push_back(kSpaceAfterRest * (quiet_after(loop.response, load_start()) - load_start()));
+            if (loop.whole) ends.push_back(kSpaceAfterRest * (quiet_after(loop.response, load_start()) - load_start()));
         const double start = load_start();
         for (RunningLoop& loop : loops) {
             const double last = loop.response.nodes.back().t;
             const double wanted = step_.length   ? *step_.length
                                   : ends.empty() ? last
                                                  : two_digits_up(start + std::max(common(ends), shortest_end()));
-            loop.entry->own_step->trace = trace(loop.response, loop.whole && loop.to_rest ? wanted : std::min(wanted, last));
+            loop.entry->own_step->trace =
+                trace(loop.response, loop.whole && loop.to_rest ? wanted : std::min(wanted, last));
         }
     }
     /// So much of the plot comes after the load or the step at least.

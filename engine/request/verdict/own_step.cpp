@@ -87,7 +87,7 @@ OptionalFinding own_step(const VerdictInput& c) {
     if (!entry || entry->refused || step == nullptr) return {};
     const Labels& labels = c.context.labels;
     if (c.has_integral())
-        if (const auto limit = exceeded_limit(*step, *entry)) 
+        if (const auto limit = exceeded_limit(*step, *entry))
             return out_of_reach(*step, *entry, *limit, *c.context.subject.linear(), labels);
     const auto limit = reached_limit(*step, *entry);
     FindingBuilder draft(limit ? "own-step-saturates" : "own-step", Level::note);

@@ -30,8 +30,7 @@ public:
         double from = 0, to = 0;
         double omega = 0;  ///< frequency that determines `from`
     };
-    std::vector<Interval> forbidden(const std::function<std::complex<double>(double)>& unit,
-                                    const PeakLimits& limits);
+    std::vector<Interval> forbidden(const std::function<std::complex<double>(double)>& unit, const PeakLimits& limits);
 
     /// Closed-loop stability with the controller of the last forbidden() at this gain, whose law this is: along the
     /// frequencies of this object if it is sampled.

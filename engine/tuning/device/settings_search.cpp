@@ -259,7 +259,8 @@ Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const S
             if (std::isfinite(found.load_IAE) && (!best || found.load_IAE < best->load_IAE)) best = found;
         };
         take(TimesSearch(local, shape, start).best(reach, control.stop));
-        if (reach == Reach::wide && std::ranges::any_of(plants, [](const auto* plant) { return is_resonant(*plant); })) {
+        if (reach == Reach::wide &&
+            std::ranges::any_of(plants, [](const auto* plant) { return is_resonant(*plant); })) {
             std::optional<Settings> other;
             for (const Settings& valley : valleys(local, shape, start, control.stop)) {
                 local.keep_margin(kMargins[0]);

@@ -1,5 +1,6 @@
 #include "engine/tuning/method/setpoint_responses.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/simulation/linear/indices.h"

@@ -1,5 +1,5 @@
-#include "engine/plant/linear/resonance.h"
 #include "engine/tuning/robust/pareto_front.h"
+#include "engine/plant/linear/resonance.h"
 
 #include <algorithm>
 #include <cmath>

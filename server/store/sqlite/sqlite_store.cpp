@@ -95,8 +95,8 @@ public:
     void finish(JobEnd end, Done<bool> done) override {
         const std::size_t bytes = end.result.size() + end.error.size();
         write<bool>(
-            end.first ? kDurable : kGathered, [end = std::move(end)](Connection& store) { return finish_job(store, end); }, std::move(done),
-            bytes);
+            end.first ? kDurable : kGathered,
+            [end = std::move(end)](Connection& store) { return finish_job(store, end); }, std::move(done), bytes);
     }
     void release(std::int64_t seq, int attempts, Done<bool> done) override {
         write<bool>(

@@ -83,15 +83,17 @@ void SqliteWriter::submit(Change change) {
     if (news) changed_.notify_one();
 }
 
-/// Returns with something to write, at the time for a probe, or to stop. Patient changes go with the first durable ones,
-/// or after a while.
+/// Returns with something to write, at the time for a probe, or to stop. Patient changes go with the first durable
+/// ones, or after a while.
 void SqliteWriter::await_changes(std::unique_lock<std::mutex>& lock) {
     const auto probe_at =
         std::chrono::steady_clock::now() + (healthy_ ? std::chrono::milliseconds(kFilePollInterval) : kProbePause);
-    const auto due = [this] { return patient_.empty() ? std::chrono::steady_clock::time_point::max() : patient_since_ + kPatience; };
+    const auto due = [this] {
+        return patient_.empty() ? std::chrono::steady_clock::time_point::max() : patient_since_ + kPatience;
+    };
     const auto ripe = [&] {
-        return !patient_.empty() && (stopping_ || !waiting_.empty() || patient_.size() >= kSet ||
-                                     std::chrono::steady_clock::now() >= due());
+        return !patient_.empty() &&
+               (stopping_ || !waiting_.empty() || patient_.size() >= kSet || std::chrono::steady_clock::now() >= due());
     };
     while (!(stopping_ || !quick_.empty() || !waiting_.empty() || !bulky_.empty() || ripe()))
         if (changed_.wait_until(lock, std::min(probe_at, due())) == std::cv_status::timeout &&

@@ -85,9 +85,9 @@ private:
     std::deque<Change> quick_;  ///< not durable, not bulky
     std::deque<Change> waiting_;
     std::deque<Change> bulky_;
-    std::deque<Change> patient_;  ///< durable, not yet among the waiting ones
+    std::deque<Change> patient_;                           ///< durable, not yet among the waiting ones
     std::chrono::steady_clock::time_point patient_since_;  ///< arrival of the first of them
-    bool quick_went_ = false;  ///< the last group consisted of quick changes
+    bool quick_went_ = false;                              ///< the last group consisted of quick changes
     bool stopping_ = false;
     std::atomic<bool> healthy_ = true;
     std::size_t awaited_ = 0;  ///< bytes of the largest change that found no space since the store was last healthy

@@ -90,7 +90,8 @@ TEST(OwnStep, ALoadBeyondTheSimulatedTimeHasNoFigures) {
     Json request = heater_request(step);
     request["implement"] = {{"sample_time", 0.01}};
     const Json entry = own_answer_to(request)["controllers"][0], own = entry["own_step"];
-    for (const char* figure : {"IAE", "peak", "recovery_time"}) EXPECT_TRUE(own["load"][figure].is_null()) << own["load"];
+    for (const char* figure : {"IAE", "peak", "recovery_time"})
+        EXPECT_TRUE(own["load"][figure].is_null()) << own["load"];
     EXPECT_TRUE(own["setpoint"]["IAE"].is_null());
     EXPECT_FALSE(own["settles"].get<bool>());
     EXPECT_EQ(entry["verdict"].dump().find("The load moves y"), std::string::npos);
@@ -110,12 +111,13 @@ TEST(OwnStep, AGivenLengthRestsWhereItIsLongEnough) {
 
 // An integrating tank whose outflow exceeds what the pump can give: y falls for ever, which no controller changes.
 TEST(OwnStep, OutOfReachOfAnIntegratingPlantIsBad) {
-    Json request = {{"plant", {{"type", "ipdt"}, {"K", 0.02}, {"L", 5}}},
-                    {"controllers", Json::array({Json{{"form", "ideal"}, {"Kp", 3}, {"Ti", 60}}})},
-                    {"evaluate",
-                     {{"points", 0},
-                      {"own_step",
-                       {{"y", 50}, {"u", 40}, {"target", 60}, {"u_min", 0}, {"u_max", 100}, {"load", {{"size", -90}}}}}}}};
+    Json request = {
+        {"plant", {{"type", "ipdt"}, {"K", 0.02}, {"L", 5}}},
+        {"controllers", Json::array({Json{{"form", "ideal"}, {"Kp", 3}, {"Ti", 60}}})},
+        {"evaluate",
+         {{"points", 0},
+          {"own_step",
+           {{"y", 50}, {"u", 40}, {"target", 60}, {"u_min", 0}, {"u_max", 100}, {"load", {{"size", -90}}}}}}}};
     const Json findings = own_answer_to(request)["controllers"][0]["verdict"];
     bool found = false;
     for (const Json& finding : findings)

@@ -3,8 +3,9 @@
 //   if (is_resonant(plant)) ...   // look for further local minima
 //
 // A resonance gives a search for the best controller several local minima: a quick loop whose derivative damps the
-// resonance, a slow one whose gain stays below it, and integral action alone with a filter that removes it. Without one a
-// search from a single good start finds the best design of nearly all plants (bench/robust_search compares thousands).
+// resonance, a slow one whose gain stays below it, and integral action alone with a filter that removes it. Without one
+// a search from a single good start finds the best design of nearly all plants (bench/robust_search compares
+// thousands).
 #pragma once
 
 #include <algorithm>

@@ -336,7 +336,7 @@ Answer controller_record_call(std::string_view body, const RunControl&) {
     ControllerRecordAnswer answer;
     if (today) {
         answer.found = std::move(today->found);
-        if (auto warning = mode_warning(request.read)) answer.found.warnings.push_back(*std::move(warning));
+        if (auto warning = mode_warning(request.read)) answer.found->warnings.push_back(*std::move(warning));
         if (today->settings)
             answer.typing.emplace(SettingsAnswer{request.device->product, today->settings->settings,
                                                  today->settings->settings, today->settings->realised,

@@ -41,7 +41,7 @@ void write_figure(const char* name, const Figure& figure, Writer& out) {
 }
 
 void write_figures(const TuningEntry& entry, Writer& out) {
-    write_figure("Ms", entry.evaluation->robustness.Ms, out);
+    write_figure("Ms", verdict::robustness_of(entry).Ms, out);
     write_figure("load_IAE", verdict::performance_of(entry).load.IAE, out);
 }
 
@@ -64,7 +64,7 @@ void write_best(const TuningEntry& best, Writer& out) {
     out.key("method").text(best.method);
     write_settings(best, out);
     write_figures(best, out);
-    if (best.evaluation->region) write_figure("worst_Ms", best.evaluation->region->worst_Ms, out);
+    if (const auto& region = region_of(best)) write_figure("worst_Ms", region->worst_Ms, out);
     if (best.optimum_at_Ms) write_figure("excess_percent", best.optimum_at_Ms->excess_percent, out);
 }
 

@@ -102,7 +102,8 @@ const Json* Ms_of(const Json& entry) {
 
 /// The largest Ms on any plant that the loop may meet.
 const Json* worst_Ms_of(const Json& entry) {
-    const Json *worst = at(entry, "/region/worst_Ms"), *own = Ms_of(entry);
+    const Json* worst = at(entry, entry.contains("implemented") ? "/implemented/region/worst_Ms" : "/region/worst_Ms");
+    const Json* own = Ms_of(entry);
     if (worst == nullptr || own == nullptr || !worst->is_number() || !own->is_number()) return worst ? worst : own;
     return worst->get<double>() > own->get<double>() ? worst : own;
 }

@@ -65,9 +65,12 @@ export interface OwnControllerEvents {
   retune(request: TuningRequest): Promise<void>;
   /** Settings that were typed in the card: shown as set by hand. */
   onByHand(settings: SettingsByHand): void;
+  /** The entry's controller was evaluated on a product for which the job was not designed; null: the job's own loop is
+      that of the settings. */
+  onJudged(entry: Entry | null): void;
 }
 
-export function ownController(store: Store, { announce, retune, onByHand }: OwnControllerEvents): OwnController {
+export function ownController(store: Store, { announce, retune, onByHand, onJudged }: OwnControllerEvents): OwnController {
   let shown: Shown | null = null;
   let mine: MyController | null = store.get().mine;
   let form: TextbookForm = rememberedForm();
@@ -95,9 +98,10 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
 
   const calls = latest<TypedQuestion, TypedAnswer>(askTyped, {
     onBusy: answer.setBusy,
-    onAnswer({ product, entered, judged }) {
+    onAnswer({ product, entered, judged }, { controller }) {
       if (!shown) return;
       showTyped(product, entered, judged ?? (tried ? null : shown.result.controllers[shown.index]!));
+      if (!tried) onJudged(judged && { ...judged, controller });
       if (!tried) announce(`Settings of ${shown.name} for ${mine?.name ?? product.name} are shown.`);
     },
     onError(error) {
@@ -181,6 +185,8 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     const inForm = formOf(entry, form);
     const rows = formRows(entry, todayEntry(), inForm, units);
     const settings = settingsOf(entry, inForm, units);
+    // Settings of a textbook form must not stand under the name of a product.
+    if (mine) return answer.complain(["Type into", ` ${mine.name}`], "");
     const heading: Answer["heading"] = ["Settings to enter:", ` ${shown!.name}`];
     if (typeof rows === "string" || typeof settings === "string") return answer.complain(heading, String(rows));
     const text = settingsText(inForm, settings);
@@ -251,6 +257,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     const entry = shown?.result.controllers[shown.index];
     const controller = tried ?? entry?.controller;
     const implement = implementOf(mine);
+    if (!implement) onJudged(null);
     if (!shown || !entry || !controller || !implement) {
       calls.drop();
       asked = "";
@@ -264,6 +271,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     asked = key;
     const known = !tried && sameImplement(request.implement, implement) ? entry.as_entered : undefined;
     if (known) {
+      onJudged(null);
       calls.drop();
       answer.setBusy(false);
       getProduct(implement.product).then(
@@ -347,10 +355,10 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       shown = next;
       if (!sameJob) {
         mine = mineOfRequest(next.request.implement, inUnits(mine, next.units));
-        picker.setUnits(next.units);
-        picker.setOutput(next.result.model?.fit?.u ?? next.request.record?.u ?? []);
         picker.set(mine);
         nameMine();
+        picker.setOutput(next.result.model?.fit?.u ?? next.request.record?.u ?? []);
+        picker.setUnits(next.units);
         showMine();
         showTodays();
       }

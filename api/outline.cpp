@@ -41,7 +41,7 @@ void write_figure(const char* name, const Figure& figure, Writer& out) {
 }
 
 void write_figures(const TuningEntry& entry, Writer& out) {
-    write_figure("Ms", entry.evaluation->robustness.Ms, out);
+    write_figure("Ms", verdict::robustness_of(entry).Ms, out);
     write_figure("load_IAE", verdict::performance_of(entry).load.IAE, out);
 }
 

@@ -83,6 +83,26 @@ JsonLocation limit_on(const FigureRow& row, const ReportInput& s) {
     return limited && options.at(name).value().is_number() ? options.at(name) : options.at("");
 }
 
+/// The loop that runs: that of the user's controller if it is known. The entry's verdict is about this one.
+JsonLocation running_loop(const JsonLocation& entry) {
+    return entry.at("implemented").at("robustness").exists() ? entry.at("implemented") : entry;
+}
+
+/// True if the verdict says that the loop that runs exceeds the design's limit on this figure.
+bool exceeds_limit(const FigureRow& row, const ReportInput& s) {
+    const Json& verdict = s.entry.at("verdict").value();
+    if (!verdict.is_array()) return false;
+    const std::string place = row.place, name = place.substr(place.rfind('/') + 1);
+    return std::ranges::any_of(verdict, [&](const Json& finding) {
+        const std::string code = finding.value("code", "");
+        const Json figures = finding.value("figures", Json::object());
+        if (code == "overshoot")
+            return name == "overshoot_percent" &&
+                   (figures.contains("asked_percent") || figures.contains("design_percent"));
+        return code == "above-limit" && figures.contains(name + "_limit");
+    });
+}
+
 /// A column of a table of figures: a loop under its heading.
 struct LoopColumn {
     const char* head;
@@ -103,12 +123,9 @@ std::vector<LoopColumn> report_columns(const ReportInput& s) {
 
 /// Today's loop and the new one, each with the user's own controller if it is known.
 std::vector<LoopColumn> effect_columns(const ReportInput& s) {
-    const auto entered = [](const JsonLocation& entry) {
-        return entry.at("implemented").at("robustness").exists() ? entry.at("implemented") : entry;
-    };
     std::vector<LoopColumn> out;
-    if (s.today) out.push_back({"Today", entered(*s.today)});
-    out.push_back({"New", entered(s.entry)});
+    if (s.today) out.push_back({"Today", running_loop(*s.today)});
+    out.push_back({"New", running_loop(s.entry)});
     return out;
 }
 
@@ -127,7 +144,11 @@ std::vector<Row> figure_rows(std::span<const FigureRow> rows, const std::vector<
         const JsonLocation limit = limit_on(row, s);
         Row line = {with_unit(row.label, unit_of(row, s))};
         if (limit.exists()) line[0] += ", limit: " + figure(limit);
-        for (const LoopColumn& column : columns) line.push_back(figure(column.at(row)));
+        for (const LoopColumn& column : columns) {
+            const bool marked = column.loop.pointer == running_loop(s.entry).pointer && exceeds_limit(row, s);
+            line.push_back(marked ? figure(column.at(row)) + " " + element("strong", "above the limit")
+                                  : figure(column.at(row)));
+        }
         out.push_back(std::move(line));
     }
     return out;
@@ -157,9 +178,9 @@ Html replay_table(const ReportInput& s) {
     return table("Replay of the record", heads_of(columns), rows);
 }
 
-/// Ms over all plants for which the entry is designed; empty if there is only one.
+/// Ms of the loop that runs over all plants for which the entry is designed; empty if there is only one.
 Html worst_case(const ReportInput& s) {
-    const JsonLocation region = s.entry.at("region");
+    const JsonLocation region = running_loop(s.entry).at("region");
     if (!region.at("worst_Ms").exists()) return {};
     return element("p", Html("Over the whole uncertainty, Ms is at worst ") + figure(region.at("worst_Ms")) +
                             "; the share of plants with a stable loop is " + figure(region.at("stable_fraction")) +
@@ -265,7 +286,13 @@ Html verdict_section(const ReportInput& s) {
 Html reason_section(const ReportInput& s) {
     const Json& findings = s.entry.at("verdict").value();
     if (!findings.is_array() || findings.empty()) return {};
-    return section("Why", element("ul", verdict_line(findings.front()), {{"class", "verdict"}}));
+    Html lines = verdict_line(findings.front());
+    for (std::size_t i = 1; i < findings.size(); ++i) {
+        const std::string level = findings[i].value("level", "");
+        if (level == "warning" || level == "bad" || findings[i].value("code", "") == "overshoot")
+            lines += verdict_line(findings[i]);
+    }
+    return section("Why", element("ul", lines, {{"class", "verdict"}}));
 }
 
 Html figures_section(const ReportInput& s) {

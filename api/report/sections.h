@@ -13,7 +13,8 @@
 namespace tunewright::api {
 
 Html verdict_section(const ReportInput& subject);
-/// The first finding of the entry, which has its level.
+/// The first finding of the entry, which has its level, and those that speak against the change: warnings, and an
+/// overshoot with its cure.
 Html reason_section(const ReportInput& subject);
 /// The title of a product, "Emerson DeltaV PID, FORM Series"; a maker whose name is part of the product's is not
 /// repeated.

@@ -108,6 +108,15 @@ std::optional<JsonLocation> entered_today(const ReportInput& s) {
     return entered;
 }
 
+/// True if a new setting replaces a value that is not known.
+bool replaces_unknown(const ReportInput& s, const JsonLocation& today) {
+    for (const auto& [name, value] : s.entry.at("as_entered").at("as_typed").value().items())
+        if (!today.at("as_typed").at(name).exists()) return true;
+    return false;
+}
+
+constexpr const char* kToNote = "note it: ______";
+
 /// Today's settings next to the new ones, by the names of the controller's own list.
 Html change_table(const product::Product& product, const ReportInput& s, TodayColumn column) {
     const JsonLocation entered = s.entry.at("as_entered"), texts = entered.at("as_typed");
@@ -124,7 +133,8 @@ Html change_table(const product::Product& product, const ReportInput& s, TodayCo
         if (unit.empty() && before) unit = text_at(before->at("units").at(name));
         Row row = {with_unit(parameter == nullptr ? name : std::string(parameter->label), unit)};
         if (before)
-            row.push_back(typed(before->at("as_typed"), name));
+            row.push_back(before->at("as_typed").at(name).exists() ? typed(before->at("as_typed"), name)
+                                                                   : Html(kToNote));
         else if (column == TodayColumn::always)
             row.push_back("");
         row.push_back(typed(texts, name));
@@ -179,6 +189,17 @@ Html notes_of(const JsonLocation& entry) {
     return list(sentences);
 }
 
+/// The values that were assumed for those of today's settings that are not known.
+Html assumed_today(const ReportInput& s) {
+    const std::optional<JsonLocation> today = has_typed(s) ? entered_today(s) : std::nullopt;
+    if (!today || !replaces_unknown(s, *today)) return {};
+    std::vector<Html> sentences;
+    for (std::size_t i = 0; i < today->at("notes").value().size(); ++i)
+        if (const JsonLocation note = today->at("notes").at(i); text_at(note.at("code")) == "default")
+            sentences.push_back(Html("Today's settings: ") + text_at(note.at("detail")));
+    return list(sentences);
+}
+
 }  // namespace
 
 std::string product_title(const product::Product& product) {
@@ -193,16 +214,21 @@ std::string controller_words(const ReportInput& s) {
 
 Html settings_section(const ReportInput& s, TodayColumn column) {
     const Html change = has_typed(s) ? change_table(*product_of(s), s, column) : ideal_table(s, column);
-    return section("Settings", element("div", change + ranges_table(s), {{"class", "tables"}}) + notes_of(s.entry));
+    return section("Settings", element("div", change + ranges_table(s), {{"class", "tables"}}) + notes_of(s.entry) +
+                                   assumed_today(s));
 }
 
 Html way_back_section(const ReportInput& s) {
-    const bool known = has_typed(s) ? entered_today(s).has_value() : s.today.has_value();
+    const std::optional<JsonLocation> entered = has_typed(s) ? entered_today(s) : s.today;
+    const bool known = entered.has_value(), in_part = known && has_typed(s) && replaces_unknown(s, *entered);
     const char* const before =
-        known ? "Compare the column Today with the controller before you change anything, and correct it by hand where "
-                "they differ. "
-              : "Today's settings are unknown: write the controller's values into the column Today before you change "
-                "anything. ";
+        in_part ? "Some of today's settings are unknown: before you change anything, write the value of each setting "
+                  "marked \"note it\" into the column Today, and compare the others with the controller. "
+        : known
+            ? "Compare the column Today with the controller before you change anything, and correct it by hand where "
+              "they differ. "
+            : "Today's settings are unknown: write the controller's values into the column Today before you change "
+              "anything. ";
     return section("To go back", element("p", Html(before) + "To go back, enter the values of this column."));
 }
 

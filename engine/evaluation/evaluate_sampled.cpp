@@ -65,6 +65,7 @@ Expected<DeviceLoop> evaluate_sampled(const AnalysedPlant& subject, const Sample
         return on_device;
     }
     on_device.robustness = robustness_of(loop, grid);
+    if (subject.family() != nullptr) on_device.region = region_figures(*subject.family(), law);
     if (auto error = stopped(options)) return *error;
     const NonlinearSystem* system = subject.equations();
     ProgramLimits all = limits;

@@ -16,8 +16,8 @@ namespace tunewright {
 struct DeviceLoop {
     Robustness robustness;  ///< of the samples (sampled_loop.h); for a nonlinear plant of its linearisation
     Performance performance;
-    std::optional<Responses> responses;  ///< with points > 0 and a stable loop
-    std::vector<Warning> warnings;
+    std::optional<Responses> responses;   ///< with points > 0 and a stable loop
+    std::optional<RegionFigures> region;  ///< for a family of more than one plant
 };
 
 /// `options` give steps, horizon, traces and actuator limits; noise figures are not computed. With a resolution or a

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "engine/loop/sampled/sampled_loop.h"
 #include "engine/loop/worst_case.h"
 #include "engine/number_text.h"
 #include "engine/numerics/fast_complex.h"
@@ -73,8 +74,7 @@ struct RegionCheck {
     WorstCase worst;
 };
 
-RegionCheck check(const PlantRegion& region, const ParallelPid& controller) {
-    const PlantCost cost = [&](const LinearPlant& plant) { return log_sensitivity_peak(plant, controller); };
+RegionCheck check(const PlantRegion& region, const PlantCost& cost) {
     RegionCheck result{0, {PlantRegion::Point(static_cast<std::size_t>(region.dimension()), 0.0), -INFINITY}};
     const auto look = [&](const PlantRegion::Point& z) {
         const auto plant = LinearPlant::make(region.at(z));
@@ -86,6 +86,7 @@ RegionCheck check(const PlantRegion& region, const ParallelPid& controller) {
     double looked_at = static_cast<double>(points.size()), stable = 0;
     for (const auto& z : points) stable += look(z) ? 1 : 0;
     const bool all_stable = std::isfinite(result.worst.cost);
+    look(PlantRegion::Point(static_cast<std::size_t>(region.dimension()), 0.0));
     for (const auto& z : region.ends()) look(z);
     if (std::isfinite(result.worst.cost)) result.worst = find_worst_case(region, cost, {result.worst.z});
     // An unstable plant that the samples missed counts as one more, so that 1 always means that no unstable plant is
@@ -95,13 +96,12 @@ RegionCheck check(const PlantRegion& region, const ParallelPid& controller) {
     return result;
 }
 
-}  // namespace
-
-RegionFigures region_figures(const PlantFamily& family, const ParallelPid& controller) {
+/// `log_Ms`: ln Ms of the controller on a plant.
+RegionFigures figures_over(const PlantFamily& family, const PlantCost& log_Ms) {
     RegionFigures figures;
     double fractions = 0, worst = -INFINITY;
     for (const auto& region : family.regions) {
-        const RegionCheck found = check(region, controller);
+        const RegionCheck found = check(region, log_Ms);
         fractions += found.stable_fraction;
         if (found.worst.cost <= worst) continue;
         worst = found.worst.cost;
@@ -110,6 +110,19 @@ RegionFigures region_figures(const PlantFamily& family, const ParallelPid& contr
     figures.stable_fraction = fractions / static_cast<double>(family.regions.size());
     figures.worst_Ms = finite_or(std::exp(worst), "The loop is unstable on at least one plant, such as worst_plant.");
     return figures;
+}
+
+}  // namespace
+
+RegionFigures region_figures(const PlantFamily& family, const ParallelPid& controller) {
+    return figures_over(family, [&](const LinearPlant& plant) { return log_sensitivity_peak(plant, controller); });
+}
+
+RegionFigures region_figures(const PlantFamily& family, const SampledPid& law) {
+    return figures_over(family, [&](const LinearPlant& plant) {
+        if (refuse_sampling(plant, law.Ts, law.computation_delay)) return static_cast<double>(INFINITY);
+        return std::log(SampledLoop(plant, law).sensitivity_peak().value);
+    });
 }
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "engine/controller/sampled/sampled_pid.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
@@ -20,9 +21,11 @@ Robustness unstable_robustness(const StabilityCount& count);
 
 /// Figures of one controller over all plants of a family. `stable_fraction`: of each region by 128 points spread
 /// uniformly over its parameters, and the mean over the plants of a set; 1 only if no unstable plant was found.
-/// `worst_Ms`: the largest at those points, at the regions' ends and at the result of a local search from the worst of
-/// them.
+/// `worst_Ms`: the largest at those points, at the regions' centres and ends and at the result of a local search from
+/// the worst of them.
 RegionFigures region_figures(const PlantFamily& family, const ParallelPid& controller);
+/// The same for a program that computes once every sample time.
+RegionFigures region_figures(const PlantFamily& family, const SampledPid& law);
 
 /// The loop's curves for drawing: at most `points` frequencies, spread so that neighbours differ as little as possible
 /// in the phase of L, in |L| and in omega; a dead time's turns are followed until |L| is too small to be visible.

@@ -32,7 +32,7 @@ Expected<DeviceLoop> loop_of(const AnalysedPlant& subject, const device::DeviceM
     if (device.sampled()) return evaluate_sampled(subject, fitted.law, device.program, options);
     auto evaluation = evaluate(subject, device::continuous(fitted.controller), options);
     if (!evaluation) return evaluation.error();
-    return DeviceLoop{evaluation->robustness, evaluation->performance, evaluation->responses, {}};
+    return DeviceLoop{evaluation->robustness, evaluation->performance, evaluation->responses, evaluation->region};
 }
 
 // The settings closest to the ideal loop: as robust as it is, and as fast as that allows.

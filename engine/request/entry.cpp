@@ -19,13 +19,16 @@ bool PlacedPeak::exceeds(double limit) const {
            limit * (1 + (on_worst_plant() ? limits::kMaxRelativeExcessShownOfWorst : limits::kMaxRelativeExcessShown));
 }
 
+const std::optional<RegionFigures>& region_of(const TuningEntry& entry) {
+    return entry.on_device ? entry.on_device->loop.region : entry.evaluation->region;
+}
+
 std::optional<PlacedPeak> worst_Ms(const TuningEntry& entry) {
     auto largest =
         running(entry.evaluation->robustness.Ms, entry.on_device ? &entry.on_device->loop.robustness.Ms : nullptr);
-    if (!entry.evaluation->region) return largest;
-    const Figure& worst = entry.evaluation->region->worst_Ms;
-    if (worst && (!largest || *worst > largest->value))
-        largest = {*worst, entry.on_device ? PeakLoop::ideal_on_worst_plant : PeakLoop::worst_plant};
+    const auto& region = region_of(entry);
+    if (region && region->worst_Ms && (!largest || *region->worst_Ms > largest->value))
+        largest = {*region->worst_Ms, PeakLoop::worst_plant};
     return largest;
 }
 

@@ -37,14 +37,14 @@ struct Standing {
     bool holds() const { return group == StandingGroup::holds; }
 };
 
-/// The loop to which a known peak belongs: the ideal one, that of the user's controller, or either on the worst of
-/// several plants.
-enum class PeakLoop { ideal, on_device, worst_plant, ideal_on_worst_plant };
+/// The loop to which a known peak belongs: the ideal one, that of the user's controller, or the one of them that runs
+/// on the worst of several plants.
+enum class PeakLoop { ideal, on_device, worst_plant };
 
 struct PlacedPeak {
     double value = 0;
     PeakLoop loop = PeakLoop::ideal;
-    bool on_worst_plant() const { return loop == PeakLoop::worst_plant || loop == PeakLoop::ideal_on_worst_plant; }
+    bool on_worst_plant() const { return loop == PeakLoop::worst_plant; }
     /// True if the value exceeds its limit by more than the tolerance for showing that the limit is kept
     /// (tuning/limits.h). Ranking and verdict use this.
     bool exceeds(double limit) const;
@@ -92,8 +92,12 @@ struct TuningEntry {
     }
 };
 
-/// Ms of the loop that runs (of the ideal one where it has none), or that on the worst of several plants, which is
-/// known of the ideal loop alone, where it is larger. The entry has an evaluation.
+/// Figures over several plants of the loop that runs: that of the user's controller where it is known. The entry has an
+/// evaluation.
+const std::optional<RegionFigures>& region_of(const TuningEntry& entry);
+
+/// Ms of the loop that runs (of the ideal one where it has none), or that on the worst of several plants where it is
+/// larger. The entry has an evaluation.
 std::optional<PlacedPeak> worst_Ms(const TuningEntry& entry);
 /// The same of Mt, which is not known on the worst plant.
 std::optional<PlacedPeak> worst_Mt(const TuningEntry& entry);

@@ -12,18 +12,19 @@ bool exceeds(double worst_Ms, double limit) { return worst_Ms > (1 + limits::kMa
 
 }  // namespace
 
-bool breaks_limit(const Evaluation& evaluation, std::optional<double> Ms_limit) {
-    if (!evaluation.region) return false;
-    return !evaluation.region->worst_Ms || (Ms_limit && exceeds(*evaluation.region->worst_Ms, *Ms_limit));
+bool breaks_limit(const std::optional<RegionFigures>& region, std::optional<double> Ms_limit) {
+    if (!region) return false;
+    return !region->worst_Ms || (Ms_limit && exceeds(*region->worst_Ms, *Ms_limit));
 }
 
-void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool identified) {
+void warn_of_region(Evaluation& evaluation, const std::optional<RegionFigures>& region, std::optional<double> Ms_limit,
+                    bool identified) {
     constexpr double kMinBadRatio = 2;  // multiple of the limit
     if (identified)
         for (Warning& warning : evaluation.warnings)
             if (warning.code == "unstable-in-region") warning.level = WarningLevel::bad;
-    if (!evaluation.region || !evaluation.region->worst_Ms || !Ms_limit) return;
-    const double worst = *evaluation.region->worst_Ms;
+    if (!region || !region->worst_Ms || !Ms_limit) return;
+    const double worst = *region->worst_Ms;
     if (!exceeds(worst, *Ms_limit)) return;
     evaluation.warnings.push_back(
         {"above-limit-in-region",
@@ -31,14 +32,14 @@ void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool
          identified && worst > kMinBadRatio * *Ms_limit ? WarningLevel::bad : WarningLevel::warning});
 }
 
-void say_choice(Evaluation& held, const Evaluation& nominal) {
-    const std::string there = nominal.region->worst_Ms ? "Ms up to " + text(*nominal.region->worst_Ms) + " is possible"
-                                                       : std::string("an unstable loop");
+void say_choice(Evaluation& held, const RegionFigures& alone) {
+    const std::string there =
+        alone.worst_Ms ? "Ms may reach " + text(*alone.worst_Ms) : std::string("the loop may be unstable");
     held.warnings.insert(held.warnings.begin(),
                          {"held-on-region",
-                          "The limits hold for every plant in the record's confidence region (95 %). With the design "
-                          "for the model alone (the next entry), the region allows " +
-                              there + " on them."});
+                          "The limits hold for every plant in the record's confidence region (95 %). On these plants "
+                          "the design for the model alone does not keep them: " +
+                              there + "."});
 }
 
 void warn_of_band(Evaluation& evaluation, const std::optional<ExcitedBand>& band) {

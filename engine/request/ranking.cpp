@@ -20,7 +20,7 @@ Figure judged_Ms(const TuningEntry& entry) {
     const Evaluation& evaluation = *entry.evaluation;
     const Figure& runs = entry.on_device ? entry.on_device->loop.robustness.Ms : evaluation.robustness.Ms;
     if (!runs) return runs;
-    if (evaluation.region && !evaluation.region->worst_Ms) return evaluation.region->worst_Ms;
+    if (const auto& region = region_of(entry); region && !region->worst_Ms) return region->worst_Ms;
     return Figure(worst_Ms(entry)->value);
 }
 
@@ -33,7 +33,7 @@ std::string unrest(const Performance& performance) {
 }
 
 std::string above(const TuningEntry& entry, const Figure& Ms, double limit) {
-    const bool several = entry.evaluation->region.has_value();
+    const bool several = region_of(entry).has_value();
     if (Ms)
         return std::string(worst_Ms(entry)->on_worst_plant() ? "On the worst plant Ms is " : "Ms is ") + text(*Ms) +
                ", above " + text(limit) + ".";

@@ -112,7 +112,7 @@ void Rows::add_device_entry(TuningEntry& entry, std::optional<device::Fitted> fi
 // Adds the figures and findings that today's settings do not have.
 void Rows::add_to_design(const RunControl& control, TuningEntry& entry) const {
     entry.longest_sample_time = longest_sample_time_of(subject_, *entry.evaluation, control.stop);
-    warn_of_region(*entry.evaluation, entry.Ms_limit, model_ != nullptr);
+    warn_of_region(*entry.evaluation, region_of(entry), entry.Ms_limit, model_ != nullptr);
 }
 
 TuningEntry Rows::entry(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
@@ -160,7 +160,7 @@ MadeRow Rows::of(const PlannedRow& planned, const RunControl& control) {
                      planned.method->holds_family && subject_.family() != nullptr;
     TuningEntry& first = made.entries.front();
     if (!may || !first.evaluation || made.partial || control.stop.stop_requested() ||
-        !breaks_limit(*first.evaluation, first.Ms_limit))
+        !breaks_limit(region_of(first), first.Ms_limit))
         return made;
     std::optional<TuningProblem> on_region = problem_;
     on_region->family = *subject_.family();
@@ -171,7 +171,7 @@ MadeRow Rows::of(const PlannedRow& planned, const RunControl& control) {
     if (cost && alone && *alone > 0) held.region_cost = *cost / *alone;
     held.title = planned.title("region");
     first.title = planned.title("model alone");
-    say_choice(*held.evaluation, *first.evaluation);
+    say_choice(*held.evaluation, *region_of(first));
     made.entries.insert(made.entries.begin(), std::move(held));
     return made;
 }

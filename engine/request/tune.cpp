@@ -294,7 +294,7 @@ Expected<TuningResult> TuningRun::result() {
     draw_together(result_.controllers);
     result_.ranking = ranked(result_.controllers, terms());
     if (result_.model && !result_.ranking.empty())
-        result_.model->region = result_.controllers[static_cast<size_t>(result_.ranking.front())].evaluation->region;
+        result_.model->region = region_of(result_.controllers[static_cast<size_t>(result_.ranking.front())]);
     result_.ranking_by = ranking_by(result_.controllers, terms());
     result_.rank_Ms = terms().rank_Ms;
     const verdict::Context context{*subject_,

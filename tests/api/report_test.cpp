@@ -117,6 +117,42 @@ TEST(Report, TheHeadOfAChangeSheetNamesTheProductOnlyIfItTakesTheSettings) {
         EXPECT_THAT(sheet(controller, ""), Not(HasSubstr("Klipper")));
 }
 
+TEST(Report, AChangeSheetTellsWhichOfTodaysSettingsMustBeNotedToGoBack) {
+    const auto entered = [](const char* method, const std::string& typed, const std::string& notes) {
+        return R"({"method": ")" + std::string(method) + R"(", "controller": {"form": "ideal", "Kp": 1, "Ti": 20},
+            "as_entered": {"product": "deltav", "as_typed": )" +
+               typed + R"(, "notes": )" + notes + "}}";
+    };
+    const std::string next = entered("robust", R"({"GAIN": "2.0", "STRUCTURE": "I on error"})", "[]");
+    const std::string assumed = R"([{"code": "default", "detail": "STRUCTURE = PI on error."}])";
+    const auto sheet_with = [&](const std::string& typed) {
+        return std::get<std::string>(sheet_of(next + "," + entered("baseline", typed, assumed)));
+    };
+    const std::string in_part = sheet_with(R"({"GAIN": "1.0"})");
+    EXPECT_EQ(count(in_part, "<td>note it: ______</td>"), 1u);
+    EXPECT_THAT(in_part, HasSubstr("Today's settings: STRUCTURE = PI on error."));
+    EXPECT_THAT(in_part, HasSubstr("Some of today's settings are unknown"));
+    const std::string whole = sheet_with(R"({"GAIN": "1.0", "STRUCTURE": "PI on error"})");
+    EXPECT_EQ(count(whole, "note it"), 0u);
+    EXPECT_THAT(whole, Not(HasSubstr("are unknown")));
+}
+
+TEST(Report, AChangeSheetNamesWhatSpeaksAgainstTheChange) {
+    const std::string sheet = std::get<std::string>(sheet_of(R"({"method": "robust", "controller": {"form": "ideal",
+        "Kp": 2, "Ti": 10}, "options": {"setpoint": {"overshoot": 5}}, "robustness": {"Ms": 1.4}, "verdict": [
+        {"code": "robust", "level": "good", "text": "first"}, {"code": "peaks", "level": "note", "text": "plain"},
+        {"code": "replay", "level": "warning", "text": "1.13 times worse"},
+        {"code": "overshoot", "level": "note", "text": "a lag", "figures": {"design_percent": 5}}],
+        "performance": {"setpoint": {"overshoot_percent": 12.59}},
+        "implemented": {"robustness": {"Ms": 1.45}, "performance": {"setpoint": {"overshoot_percent": 12.6}},
+        "region": {"worst_Ms": 1.5, "stable_fraction": 1}}, "region": {"worst_Ms": 1.3, "stable_fraction": 1}})"));
+    for (const char* said : {">first<", ">1.13 times worse<", ">a lag<"}) EXPECT_THAT(sheet, HasSubstr(said));
+    EXPECT_THAT(sheet, Not(HasSubstr(">plain<")));
+    EXPECT_EQ(count(sheet, "above the limit"), 1u);
+    EXPECT_THAT(sheet, HasSubstr("/implemented/region/worst_Ms"));
+    EXPECT_THAT(sheet, Not(HasSubstr("/controllers/0/region/worst_Ms")));
+}
+
 TEST(Report, WhatChangesNothingHasNoChangeSheet) {
     const auto status = [](const std::variant<std::string, Problem>& answer) {
         return std::holds_alternative<Problem>(answer) ? std::get<Problem>(answer).status : 200;

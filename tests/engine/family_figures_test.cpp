@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluate_sampled.h"
+#include "tests/engine/plant/subject_of.h"
 
 namespace tunewright {
 namespace {
@@ -59,6 +61,23 @@ TEST(FamilyFigures, AShareIsNotRoundedToAll) {
     ASSERT_NE(warning, evaluation->warnings.end());
     EXPECT_EQ(warning->detail.find("100 %"), std::string::npos) << warning->detail;
     EXPECT_NE(warning->detail.find("more than 99.9 %"), std::string::npos) << warning->detail;
+}
+
+TEST(FamilyFigures, TheWorstMsOfAProgramIsThatOfItsOwnLoopOnTheWorstPlant) {
+    const PlantModel plants(PlantSet{{Fopdt{2, 10, 3}, Fopdt{2.4, 10, 3.6}, Fopdt{1.8, 12, 3}}});
+    const IdealPid pid{.Kp = 0.7, .Ti = 6, .Td = 1, .filter = {FilterType::derivative, 0.1}};
+    const SampledPid law{.gains = to_parallel(pid), .Ts = 1.5};
+    const auto loop = evaluate_sampled(test::subject_of(plants), law, {}, without_traces());
+    ASSERT_TRUE(loop && loop->region && loop->region->worst_Ms);
+    const PlantModel worst(loop->region->worst_plant);
+    const auto alone = evaluate_sampled(test::subject_of(worst), law, {}, without_traces());
+    ASSERT_TRUE(alone && alone->robustness.Ms);
+    EXPECT_FALSE(alone->region);
+    EXPECT_NEAR(*loop->region->worst_Ms, *alone->robustness.Ms, 1e-6);
+    EXPECT_GE(*loop->region->worst_Ms, *loop->robustness.Ms - 1e-9);
+    const auto ideal = evaluate(plants, pid, without_traces());
+    ASSERT_TRUE(ideal && ideal->region);
+    EXPECT_GT(*loop->region->worst_Ms, 1.02 * *ideal->region->worst_Ms) << "half a sample acts as dead time";
 }
 
 }  // namespace

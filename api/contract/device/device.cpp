@@ -181,6 +181,8 @@ const Description<DeviceEntry>& implemented_contract() {
                    "Figures of the responses.");
         loop_field(d, "responses", &DeviceLoop::responses, maybe(answer(responses_contract())),
                    "Traces over time; left out with points 0 and for unstable loops.");
+        loop_field(d, "region", &DeviceLoop::region, maybe(answer(region_contract())),
+                   "Figures over all plants for which the controller is designed; left out if there is only one.");
         d.field(
             "difference", {},
             [](const DeviceEntry& on_device, Writer& out) { difference_contract().write(on_device, out); },

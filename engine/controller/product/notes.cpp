@@ -139,8 +139,15 @@ const char* rule_name(IntegralRule rule) {
     return "backward";
 }
 
+/// What the notes on a block itself depend on.
+struct BlockLaw {
+    const Product& product;
+    const IdealPid& realised;
+    const Context& context;
+};
+
 /// A first-order lag by forward differences multiplies its state by 1 - Ts/Tf in each sample.
-void note_unstable_filter(const Comparison& it, std::vector<Note>& notes) {
+void note_unstable_filter(const BlockLaw& it, std::vector<Note>& notes) {
     const auto Ts = clocks_of(it.product, it.context).sample_time;
     const double unit = it.context.seconds_per_time, Tf = it.realised.filter.Tf;
     if (!Ts || it.product.algorithm.derivative != DerivativeRule::filtered_forward || it.realised.Td == 0) return;
@@ -151,7 +158,7 @@ void note_unstable_filter(const Comparison& it, std::vector<Note>& notes) {
                                 ": Tf must be above half of it. Use a longer Tf, or a shorter sample time."});
 }
 
-void note_algorithm(const Comparison& it, std::vector<Note>& notes) {
+void note_algorithm(const BlockLaw& it, std::vector<Note>& notes) {
     const Algorithm& algorithm = it.product.algorithm;
     if (!algorithm.published) {
         notes.push_back({"discretisation",
@@ -170,7 +177,7 @@ void note_algorithm(const Comparison& it, std::vector<Note>& notes) {
 }
 
 /// For a block whose output is in percent while u is not.
-void note_percent(const Comparison& it, std::vector<Note>& notes) {
+void note_percent(const BlockLaw& it, std::vector<Note>& notes) {
     constexpr double kPercent = 100;
     const double span = it.context.spans.u_high - it.context.spans.u_low;
     if (!it.product.in_percent || !it.context.u_span_given || same(span, kPercent)) return;
@@ -182,7 +189,7 @@ void note_percent(const Comparison& it, std::vector<Note>& notes) {
                                     ", or tune with u in percent."});
 }
 
-void note_evidence(const Comparison& it, std::vector<Note>& notes) {
+void note_evidence(const BlockLaw& it, std::vector<Note>& notes) {
     const Evidence& evidence = it.product.evidence;
     if (evidence.unverified.empty() && evidence.level == EvidenceLevel::read) return;
     std::string list;
@@ -213,14 +220,20 @@ std::string setpoint_prefilter(const IdealPid& asked, const IdealPid& realised) 
     return "(" + weighted(realised, asked.b, asked.c) + ")/(" + weighted(realised, realised.b, realised.c) + ")";
 }
 
+void add_block_notes(const Product& product, const IdealPid& realised, const Context& context,
+                     std::vector<Note>& notes) {
+    const BlockLaw block{product, realised, context};
+    note_percent(block, notes);
+    note_algorithm(block, notes);
+    note_evidence(block, notes);
+}
+
 void add_notes(const Comparison& comparison, std::vector<Note>& notes) {
     note_weights(comparison, notes);
     note_filter(comparison, notes);
     if (!same(comparison.asked.filter.Tf, comparison.realised.filter.Tf)) note_other_ratio(comparison, notes);
     note_rounding(comparison, notes);
-    note_percent(comparison, notes);
-    note_algorithm(comparison, notes);
-    note_evidence(comparison, notes);
+    add_block_notes(comparison.product, comparison.realised, comparison.context, notes);
 }
 
 }  // namespace tunewright::product

@@ -17,9 +17,15 @@ struct Comparison {
     const Settings& typed;     ///< in the block's resolution
 };
 
-/// Adds a note for each difference or fact to know: weights, filter, rounding, rules of the algorithm, clock, evidence.
-/// Codes: setpoint-weights, prefilter, filter, filter-ratio (of a series block: the settings that have the design's
-/// own), rounding, discretisation, clock, unverified.
+/// Adds a note for each fact to know about the block, whatever its settings were made from: an output in percent, rules
+/// of the algorithm, clock, evidence. `realised`: the law of its settings. Codes: percent, discretisation,
+/// unstable-filter, clock, unverified.
+void add_block_notes(const Product& product, const IdealPid& realised, const Context& context,
+                     std::vector<Note>& notes);
+
+/// Adds a note for each difference from the requested law: weights, filter, rounding; then those on the block. Codes:
+/// setpoint-weights, prefilter, filter, filter-ratio (of a series block: the settings that have the design's own),
+/// rounding.
 void add_notes(const Comparison& comparison, std::vector<Note>& notes);
 
 /// The set-point filter before the block that gives exactly the requested weights, as text. "" if there is none: the

@@ -21,29 +21,67 @@ namespace {
 constexpr int kDoublings = 10, kHalvings = 6;  // doublings and halvings in the search for a lag
 constexpr double kOwnTolerance = 0.01;  // percentage points: tolerance for a response that was simulated another way
 
-/// Overshoot in percent of the implemented loop with this weight and lag; infinite if it does not settle.
-double overshoot_with(const VerdictInput& c, const LinearPlant& plant, const SetpointCure& cure) {
+/// The implemented loop's response to the set-point step with this weight and lag.
+StepResponse response_with(const VerdictInput& c, const LinearPlant& plant, const SetpointCure& cure) {
     const EvaluateOptions& options = c.context.options;
     const double r = options.setpoint_step;
-    StepResponse response;
     if (c.on_device() && c.entry.on_device->fitted.law.Ts > 0) {
         SampledPid law = c.entry.on_device->fitted.law;
         law.gains.b = cure.b;
         law.gains.setpoint_lag = cure.lag;
-        response = simulate_sampled(plant, law, {.output = options.actuator}, {r, 0}, {});
-    } else {
-        ParallelPid acting =
-            gains(c.on_device() ? device::continuous(c.entry.on_device->fitted.controller) : c.evaluation.controller);
-        acting.b = cure.b;
-        acting.setpoint_lag = cure.lag;
-        response = options.actuator
-                       ? simulate_limited(plant, acting, {r, 0}, {options.actuator->min, options.actuator->max}, {})
-                       : simulate_linear(plant, acting, {r, 0}, {});
+        return simulate_sampled(plant, law, {.output = options.actuator}, {r, 0}, {});
     }
+    ParallelPid acting =
+        gains(c.on_device() ? device::continuous(c.entry.on_device->fitted.controller) : c.evaluation.controller);
+    acting.b = cure.b;
+    acting.setpoint_lag = cure.lag;
+    return options.actuator
+               ? simulate_limited(plant, acting, {r, 0}, {options.actuator->min, options.actuator->max}, {})
+               : simulate_linear(plant, acting, {r, 0}, {});
+}
+
+/// Its overshoot in percent; infinite if it does not settle.
+double overshoot_with(const VerdictInput& c, const LinearPlant& plant, const SetpointCure& cure) {
+    const double r = c.context.options.setpoint_step;
+    const StepResponse response = response_with(c, plant, cure);
     if (!response.settles) return INFINITY;
     const Extremes y = extremes_of_y(response.nodes);
     return 100 * ((r > 0 ? y.max : y.min) / r - 1);
 }
+
+/// The overshoot of a linear loop after a ramp of the set point: its response is the mean of the step response over the
+/// ramp's duration.
+class RampedStep {
+public:
+    RampedStep(const StepResponse& step, double target) : horizon_(step.nodes.back().t), sums_{0} {
+        const auto trace = sampled(step.nodes, horizon_, kPoints);
+        for (std::size_t i = 1; i < trace.size(); ++i)
+            sums_.push_back(sums_.back() + 0.5 * (trace[i - 1].first + trace[i].first) / target);
+    }
+
+    double overshoot_percent(double duration) const {
+        const double spacing = horizon_ / (kPoints - 1), width = duration / spacing;
+        double max = 0;
+        for (double end = 0; end <= kPoints - 1 + width; ++end)
+            max = std::max(max, (sum_to(end) - sum_to(end - width)) / width);
+        return 100 * (max - 1);
+    }
+    double horizon() const { return horizon_; }
+
+private:
+    /// The integral of y from 0, in units of target and spacing; after the last point y is at rest.
+    double sum_to(double point) const {
+        if (point <= 0) return 0;
+        const double last = kPoints - 1;
+        if (point >= last) return sums_.back() + point - last;
+        const auto before = static_cast<std::size_t>(point);
+        return std::lerp(sums_[before], sums_[before + 1], point - std::floor(point));
+    }
+
+    static constexpr int kPoints = 2001;
+    double horizon_;
+    std::vector<double> sums_;
+};
 
 const LinearPlant* only_linear(const VerdictInput& c) {
     return c.context.subject.equations() == nullptr ? c.context.subject.linear() : nullptr;
@@ -85,6 +123,23 @@ std::optional<SetpointCure> overshoot_cure(const VerdictInput& c, double percent
     if (low > 0) cure->lag = bisect({cure->lag, low}, keeps, kHalvings).inside;
     if (stopped()) return std::nullopt;
     return cure;
+}
+
+std::optional<double> overshoot_ramp(const VerdictInput& c, double percent) {
+    const LinearPlant* plant = only_linear(c);
+    const auto pid =
+        c.on_device() ? Expected<IdealPid>(c.entry.on_device->fitted.controller) : to_ideal(c.evaluation.controller);
+    if (plant == nullptr || !pid || c.context.options.actuator || c.context.control.stop.stop_requested() ||
+        std::holds_alternative<Npid>(c.evaluation.controller))
+        return std::nullopt;
+    const StepResponse step = response_with(c, *plant, {pid->b, 0});
+    if (!step.settles) return std::nullopt;
+    const RampedStep ramped(step, c.context.options.setpoint_step);
+    const auto keeps = [&](double duration) { return ramped.overshoot_percent(duration) <= percent; };
+    double high = ramped.horizon() / (1 << kDoublings);
+    for (int i = 0; !keeps(high); ++i, high *= 2)
+        if (i == 2 * kDoublings) return std::nullopt;
+    return bisect({high, 0.5 * high}, keeps, 2 * kHalvings).inside;
 }
 
 std::optional<double> min_load_IAE(const VerdictInput& c) {

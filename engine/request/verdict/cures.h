@@ -14,6 +14,10 @@ namespace tunewright::verdict {
 /// a nonlinear integral.
 std::optional<SetpointCure> overshoot_cure(const VerdictInput& c, double percent);
 
+/// The shortest duration of a ramp of the set point with which the implemented loop overshoots by at most `percent`.
+/// Empty as above, and with limits of u.
+std::optional<double> overshoot_ramp(const VerdictInput& c, double percent);
+
 /// The least load IAE that any controller can have, in y times time: the load has moved y for one dead time before the
 /// first reaction to it arrives, so it is at least |d| |integral of h from 0 to L| with h the step response of the
 /// plant without its dead time. Linear plants without a horizon; else empty.

@@ -16,18 +16,19 @@ std::string words_of(PeakLoop loop) {
         case PeakLoop::ideal: return "";
         case PeakLoop::on_device: return " on your controller";
         case PeakLoop::worst_plant: return " on the worst plant";
-        case PeakLoop::ideal_on_worst_plant: return " of the ideal loop on the worst plant";
     }
     return "";
+}
+
+const Robustness& robustness_of(const TuningEntry& entry) {
+    return entry.on_device ? entry.on_device->loop.robustness : entry.evaluation->robustness;
 }
 
 const Performance& performance_of(const TuningEntry& entry) {
     return entry.on_device ? entry.on_device->loop.performance : entry.evaluation->performance;
 }
 
-const Robustness& VerdictInput::robustness() const {
-    return entry.on_device ? entry.on_device->loop.robustness : evaluation.robustness;
-}
+const Robustness& VerdictInput::robustness() const { return robustness_of(entry); }
 
 const Performance& VerdictInput::performance() const { return performance_of(entry); }
 

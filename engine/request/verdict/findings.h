@@ -28,6 +28,7 @@ struct VerdictInput {
     /// The implemented loop where it is known, else the ideal one.
     const Robustness& robustness() const;
     const Performance& performance() const;
+    const std::optional<RegionFigures>& region() const { return region_of(entry); }
     bool on_device() const { return entry.on_device.has_value(); }
     bool is_today() const { return entry.is_baseline(); }
 
@@ -38,7 +39,8 @@ struct VerdictInput {
     std::optional<PlacedPeak> worst_Mt() const { return tunewright::worst_Mt(entry); }
 };
 
-/// Performance of the implemented loop where it is known, else of the ideal one.
+/// Those of the implemented loop where it is known, else of the ideal one.
+const Robustness& robustness_of(const TuningEntry& entry);
 const Performance& performance_of(const TuningEntry& entry);
 
 // primary_findings.cpp: statements on the whole loop

@@ -85,7 +85,7 @@ OptionalFinding active_limit(const VerdictInput& c) {
 }
 
 OptionalFinding all_members(const VerdictInput& c) {
-    const auto& region = c.evaluation.region;
+    const auto& region = c.region();
     if (!region) return {};
     const bool record = c.context.model != nullptr;
     if (region->worst_Ms && region->stable_fraction >= 1)
@@ -106,9 +106,9 @@ OptionalFinding margins(const VerdictInput& c) {
     FindingBuilder draft("margins", Level::note);
     const bool falls = low && *low > 0;
     if (!falls && !high && !dead_time) return {};
-    draft.say(c.evaluation.region ? "On the nominal plant " : "");
+    draft.say(c.region() ? "On the nominal plant " : "");
     const auto subject = [&](const char* name) {
-        return (c.evaluation.region ? std::string("the ") : std::string("The ")) + name;
+        return (c.region() ? std::string("the ") : std::string("The ")) + name;
     };
     if (falls || high) draft.say(subject("process gain may "));
     if (falls) draft.say("fall to ").number("gain_low", *low).say(" of itself");

@@ -26,7 +26,7 @@ OptionalFinding unstable_on_device(const VerdictInput& c) {
 }
 
 OptionalFinding unstable_member(const VerdictInput& c) {
-    const auto& region = c.evaluation.region;
+    const auto& region = c.region();
     if (!region || (region->worst_Ms && region->stable_fraction >= 1)) return {};
     if (c.context.model != nullptr)
         return FindingBuilder("model-too-uncertain", Level::bad)
@@ -190,7 +190,7 @@ std::vector<ActiveLimit> active_limits(const VerdictInput& c) {
     if (reached(r.Ms, limits.Ms)) active.push_back({"Ms", *r.Ms, r.omega_Ms, ""});
     if (reached(r.Mt, limits.Mt)) active.push_back({"Mt", *r.Mt, r.omega_Mt, ""});
     if (reached(r.Mks, limits.Mks)) active.push_back({"Mks", *r.Mks, {}, ""});
-    const auto& region = c.evaluation.region;
+    const auto& region = c.region();
     if (active.empty() && region && reached(region->worst_Ms, limits.Ms))
         active.push_back({"Ms", *region->worst_Ms, {}, " on the worst plant"});
     return active;

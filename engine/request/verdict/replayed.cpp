@@ -16,11 +16,19 @@ OptionalFinding replayed(const VerdictInput& c) {
         .say(" and ")
         .number("IAE_ratio_high", replay->IAE_ratio_high)
         .say(")");
-    if (replay->travel_ratio)
-        draft.say(" and ")
+    draft.say(".");
+    // The model's u moves more than the recorded one even with today's settings: like is compared with like.
+    const auto* today =
+        c.today != nullptr && c.today->replay && !c.today->replay->refused ? &*c.today->replay : nullptr;
+    if (today != nullptr && today->figures.travel > 0)
+        draft.say(" The controller output would travel ")
+            .number("travel_over_today", replay->figures.travel / today->figures.travel)
+            .say(" times as far as in the replay of today's settings.");
+    else if (replay->travel_ratio)
+        draft.say(" The controller output would travel ")
             .number("travel_ratio", *replay->travel_ratio)
-            .say(" times the travel of the controller output");
-    return draft.say(".");
+            .say(" times as far as in the record.");
+    return draft;
 }
 
 }  // namespace tunewright::verdict

@@ -29,13 +29,17 @@ constexpr RatioPhrase kRatioPhrases[] = {{0.09, 0.11, "about a tenth of"},
 void say_cure(FindingBuilder& draft, const VerdictInput& c, double percent) {
     const auto cure = overshoot_cure(c, percent);
     if (!cure) return;
+    const std::string time = printed_unit(c.context.labels.time);
+    const bool product = c.on_device() && c.entry.on_device->fitted.product != nullptr;
+    const auto ramp = product && cure->lag > 0 ? overshoot_ramp(c, percent) : std::nullopt;
     if (cure->lag > 0)
-        draft.say(" A first-order lag of ")
-            .number("setpoint_lag", cure->lag, printed_unit(c.context.labels.time))
-            .say(" on the set point keeps it within ");
+        draft.say(" A first-order lag of ").number("setpoint_lag", cure->lag, time).say(" on the set point");
     else
-        draft.say(" A set-point weight b of ").number("b", cure->b).say(" keeps it within ");
-    draft.number("kept_percent", percent, "%").say(".");
+        draft.say(" A set-point weight b of ").number("b", cure->b);
+    if (ramp) draft.say(", or a ramp of it over ").number("setpoint_ramp", *ramp, time).say(",");
+    draft.say(" keeps it within ").number("kept_percent", percent, "%").say(".");
+    if (ramp)
+        draft.say(" Where the controller has neither, change the set point in small steps over the time of the ramp.");
 }
 
 const Performance* todays_performance(const VerdictInput& c) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/controller/product/formula.h"
+#include "engine/controller/product/notes.h"
 #include "engine/controller/product/to_controller.h"
 #include "engine/loop/sampled/held_plant.h"
 #include "engine/number_text.h"
@@ -80,6 +81,7 @@ Expected<Fitted> fit(const DeviceModel& device, const product::Settings& typed) 
     const auto twin = product::to_controller(product, fitted.typed, device.context, fitted.notes);
     if (!twin) return twin.error();
     fitted.controller = *twin;
+    product::add_block_notes(product, *twin, device.context, fitted.notes);
     if (!device.sampled()) {
         fitted.law.gains = to_parallel(continuous(*twin));
         return fitted;

@@ -52,7 +52,7 @@ bool null_at(const Json& value, const std::string& pointer) {
 /// The places of a finding's figures in its entry. An entry's own places come first; any of them is sufficient.
 const std::map<std::string, std::vector<std::string>>& places() {
     static const std::map<std::string, std::vector<std::string>> all = {
-        {"Ms", {"/robustness/Ms", "/implemented/robustness/Ms", "/region/worst_Ms"}},
+        {"Ms", {"/robustness/Ms", "/implemented/robustness/Ms", "/region/worst_Ms", "/implemented/region/worst_Ms"}},
         {"Mt", {"/robustness/Mt", "/implemented/robustness/Mt"}},
         {"Mks", {"/robustness/Mks", "/implemented/robustness/Mks"}},
         {"omega_Ms", {"/robustness/omega_Ms", "/implemented/robustness/omega_Ms"}},
@@ -60,7 +60,7 @@ const std::map<std::string, std::vector<std::string>>& places() {
         {"Ms_ideal", {"/robustness/Ms"}},
         {"load_IAE", {"/performance/load/IAE", "/implemented/performance/load/IAE"}},
         {"load_IAE_ideal", {"/performance/load/IAE"}},
-        {"worst_Ms", {"/region/worst_Ms"}},
+        {"worst_Ms", {"/region/worst_Ms", "/implemented/region/worst_Ms"}},
         {"gain_low", {"/robustness/tolerates/gain/0", "/implemented/robustness/tolerates/gain/0"}},
         {"gain_high", {"/robustness/tolerates/gain/1", "/implemented/robustness/tolerates/gain/1"}},
         {"extra_dead_time",
@@ -204,10 +204,11 @@ void check_finding(const Json& entry, const Json* today, const Json& finding, co
                            1) > 1e-9,
               "not the ratio of TV");
     if (code == "members") {
-        const bool all = at(entry, "/region/stable_fraction") == 1.0 && at(entry, "/region/worst_Ms");
+        const std::string region = runs(entry) + "/region";
+        const bool all = at(entry, region + "/stable_fraction") == 1.0 && at(entry, region + "/worst_Ms");
         fault((text.find("Stable o") == 0 && text.find("% of") == text.npos) != all, "stability of all plants");
         if (!all)
-            fault(figures["stable_percent"].get<double>() > 100 * *at(entry, "/region/stable_fraction") + 1e-9,
+            fault(figures["stable_percent"].get<double>() > 100 * *at(entry, region + "/stable_fraction") + 1e-9,
                   "share");
     }
     if (code == "sample-time")
@@ -372,10 +373,11 @@ Facts facts_of(const Json& entry, const Json& request) {
             doubt(peak_that_runs(name) > 1.003 * *asked, name + " above its limit");
     doubt(peak_that_runs("Mt") > 2.00001, "Mt above 2");
     double worst = peak_that_runs("Ms");
-    if (entry.contains("region")) {
-        bad(at(entry, "/region/stable_fraction").value_or(0) < 1 || null_at(entry, "/region/worst_Ms"),
+    const std::string region = runs(entry) + "/region";
+    if (entry.contains(Json::json_pointer(region))) {
+        bad(at(entry, region + "/stable_fraction").value_or(0) < 1 || null_at(entry, region + "/worst_Ms"),
             "unstable somewhere");
-        const auto Ms = at(entry, "/region/worst_Ms");
+        const auto Ms = at(entry, region + "/worst_Ms");
         worst = std::max(worst, Ms.value_or(0));
         if (const auto asked = limit(entry, "Ms"))
             doubt(Ms.value_or(0) > 1.011 * *asked, "Ms above its limit at worst");

@@ -14,6 +14,8 @@
 #include "engine/request/evaluate_all.h"
 #include "engine/request/tune.h"
 #include "engine/request/verdict/verdict.h"
+#include "engine/simulation/linear/indices.h"
+#include "engine/simulation/sampled/sampled_response.h"
 #include "tests/engine/plant/subject_of.h"
 
 namespace tunewright {
@@ -321,9 +323,27 @@ TEST(Advice, OnEquationsTheStepThatTheActuatorCarriesIsWhereTheyComeToRest) {
     EXPECT_NEAR(finding->figures.at("largest_setpoint_step"), 0.44, 1e-9);
 }
 
-// A firmware without weight and filter: the finding has the overshoot of the step, the limit, and the lag that keeps
-// it. A limit that the request did not set is the method's own: above it there is a finding, and up to a quarter of the
-// step no doubt.
+/// Overshoot in percent if the set point changes in many small steps, over this duration together.
+double overshoot_of_steps(const LinearPlant& plant, const SampledPid& law, double duration) {
+    constexpr int kSteps = 100, kTimes = 1500;
+    const StepResponse step = simulate_sampled(plant, law, {}, {1, 0}, {});
+    const double horizon = step.nodes.back().t, spacing = horizon / kTimes;
+    const auto y = sampled(step.nodes, horizon, kTimes + 1);
+    double max = 0;
+    for (double t = 0; t < horizon; t += spacing) {
+        double sum = 0;
+        for (int k = 0; k < kSteps; ++k) {
+            const double since = t - (k + 0.5) * duration / kSteps;
+            if (since > 0) sum += y[static_cast<std::size_t>(std::lround(since / spacing))].first / kSteps;
+        }
+        max = std::max(max, sum);
+    }
+    return 100 * (max - 1);
+}
+
+// A firmware without weight and filter: the finding has the overshoot of the step, the limit, and the lag and the
+// ramp that keep it. A limit that the request did not set is the method's own: above it there is a finding, and up to a
+// quarter of the step no doubt.
 void expect_overshoot_told(std::optional<double> asked) {
     int apart = 0;
     for (const std::string product : {"klipper", "marlin", "siemens_fb41_cont_c", "esphome_pid"}) {
@@ -348,7 +368,7 @@ void expect_overshoot_told(std::optional<double> asked) {
         ++apart;
         EXPECT_EQ(finding->figures.at("overshoot_percent"), reached);
         EXPECT_EQ(finding->figures.at(asked ? "asked_percent" : "design_percent"), limit);
-        EXPECT_EQ(finding->figures.size(), 4u) << finding->text;
+        EXPECT_EQ(finding->figures.size(), 5u) << finding->text;
         const double doubted_from = asked ? *asked + 2 : 25;
         EXPECT_EQ(finding->level, reached > doubted_from ? Level::warning : Level::note) << product;
         EXPECT_EQ(entry.verdict.front().level == Level::good, reached <= doubted_from) << product;
@@ -358,6 +378,10 @@ void expect_overshoot_told(std::optional<double> asked) {
         const auto cured = evaluate_sampled(*request.subject, law, {}, request.evaluate);
         ASSERT_TRUE(cured);
         EXPECT_LE(*cured->performance.setpoint.overshoot_percent, limit + 0.02) << product;
+        EXPECT_NEAR(overshoot_of_steps(*request.subject->linear(), entry.on_device->fitted.law,
+                                       finding->figures.at("setpoint_ramp")),
+                    limit, 0.1)
+            << product;
     }
     EXPECT_GE(apart, 1);
 }

@@ -88,7 +88,7 @@ test("limits on all that the record leaves possible are asked for by a check box
     await dropFile(page, ".drop", "step.csv", stepTest);
     await candidatesShown(page);
     await page.getByText(/^By robust; /).waitFor();
-    const box = page.getByRole("checkbox", { name: "Meet the limits for every model consistent with the record" });
+    const box = page.getByRole("checkbox", { name: "Always meet the limits for every model consistent with the record" });
     assert.ok(!(await box.isChecked()));
     await box.check();
     await page.getByRole("button", { name: "Use and tune" }).click();

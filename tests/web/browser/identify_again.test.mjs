@@ -67,7 +67,7 @@ test("candidate and check box are as they were chosen after Back, and the record
     await dropFile(page, ".drop", "step.csv", stepTest);
     await candidatesShown(page);
     const choice = page.getByRole("group", { name: "Which model to use" });
-    const region = page.getByRole("checkbox", { name: /^Meet the limits for every model/ });
+    const region = page.getByRole("checkbox", { name: /^Always meet the limits for every model/ });
     const other = choice.locator("label:not(:has(:checked)):visible").first();
     const name = await other.locator("strong").innerText();
     await other.locator("input").check();

@@ -3,7 +3,7 @@ import test from "node:test";
 import { designBody } from "../../../web/src/api/live.ts";
 import type { Entry, Result, TuneEntry, TuningRequest } from "../../../web/src/api/types.ts";
 import { proposedEntry } from "../../../web/src/charts/drawn.ts";
-import { rowsOf, tuneEntryOf, withTune } from "../../../web/src/form/tuning_request.ts";
+import { byAllMethods, rowsOf, tuneEntryOf, withTune } from "../../../web/src/form/tuning_request.ts";
 import { designShown, questionOf } from "../../../web/src/live/shown.ts";
 import { keptOtherwise } from "../../../web/src/words/kept.ts";
 
@@ -50,6 +50,20 @@ test("a frame asks for the turned row alone, and the hand's letting go for the w
   const modified = { method: "robust", Ms: 1.6 };
   assert.deepEqual(questionOf(from, modified, true)["tune"], [modified]);
   assert.deepEqual(questionOf(from, modified, false)["tune"], [tune[0], modified, tune[2]]);
+});
+
+test("a design over the record's region stays one when it is moved", () => {
+  const one: TuningRequest = { record: { csv: "t,u,y" }, tune: [{ method: "robust" }] };
+  const from = { request: one, result: { controllers: [region, alone, today] }, index: 0 };
+  assert.equal(questionOf(from, { method: "robust", Ms: 1.2 }, true)["uncertainty"], "identified");
+  assert.equal(questionOf({ ...from, index: 1 }, { method: "robust", Ms: 1.2 }, true)["uncertainty"], undefined);
+});
+
+test("all methods are compared at the limits of the design that one comes from", () => {
+  const design = (options: Partial<TuneEntry>): TuningRequest => ({ plant: { type: "fopdt", K: 2, T: 10, L: 3 }, tune: [{ method: "robust", ...options }] });
+  assert.deepEqual(byAllMethods(design({ Ms: 1.497, Mt: 1.497, Mks: 3 })).tune, [{ method: "all", Ms: 1.497, Mt: 1.497 }]);
+  assert.deepEqual(byAllMethods(design({})).tune, [{ method: "all" }]);
+  assert.deepEqual(byAllMethods({ tune: [{ method: "simc" }, { method: "robust", Ms: 2 }] }).tune, [{ method: "all" }]);
 });
 
 test("an answer of the row alone stands among the others, whose common verdict waits", () => {

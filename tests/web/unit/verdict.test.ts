@@ -3,10 +3,12 @@ import { readFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 import type { Entry } from "../../../web/src/api/types.ts";
+import { factsOf } from "../../../web/src/words/facts.ts";
 import { figureGroups } from "../../../web/src/words/figures.ts";
 import type { FigureRow } from "../../../web/src/words/figures.ts";
 import { comparisonColumns } from "../../../web/src/words/comparison.ts";
 import { formatNumber, formatSetting, formatShare, product, quotient, unitNames, withMinus } from "../../../web/src/words/numbers.ts";
+import { running } from "../../../web/src/words/running.ts";
 import { settingsOf, settingsText } from "../../../web/src/words/settings.ts";
 import type { Setting } from "../../../web/src/words/settings.ts";
 
@@ -44,6 +46,23 @@ function entry(changes: Record<string, unknown> = {}, performance: Record<string
     performance: { setpoint: { TV: 7.9 }, load: { IAE: 8.44, ...performance } },
   };
 }
+
+test("the facts, the figures and the plots are those of the loop that runs", () => {
+  const ideal = { ...entry({ Ms: 1.36 }, { IAE: 698 }), region: { stable_fraction: 1, worst_Ms: 1.363 } } as Entry;
+  const implemented = {
+    robustness: { ...ideal.robustness, Ms: 1.4 },
+    performance: { setpoint: { overshoot_percent: 32.1 }, load: { IAE: 693 } },
+    region: { stable_fraction: 1, worst_Ms: 1.402 },
+  } as unknown as NonNullable<Entry["implemented"]>;
+  const facts = factsOf({ ...ideal, implemented }, undefined, unitNames(undefined)).map(({ value }) => value);
+  assert.deepEqual(facts, ["1.40", "693", "32.1"]);
+  const shown = running({ ...ideal, implemented });
+  assert.deepEqual([shown.robustness?.Ms, shown.performance?.load?.["IAE"], shown.region?.worst_Ms], [1.4, 693, 1.402]);
+  assert.equal(shown.responses, undefined, "the ideal loop's responses are not drawn in place of unknown ones");
+  assert.equal(running(ideal), ideal);
+  const load = comparisonColumns(unitNames(undefined)).find(({ id }) => id === "load_IAE")!;
+  assert.equal(load.figure({ ...ideal, implemented }).value, 693);
+});
 
 test("a controller that serves many plants has two more figures", () => {
   const on = (region: Entry["region"]): Entry => ({ ...entry(), region });

@@ -788,6 +788,7 @@ export type components = {
       robustness: components["schemas"]["Robustness"];
       performance: components["schemas"]["Performance"];
       responses?: components["schemas"]["Responses"];
+      region?: components["schemas"]["Region"];
       difference: components["schemas"]["Difference"];
     };
     Difference: {

@@ -97,15 +97,14 @@ export const ownStepsOf = ({ plant, controllers, step, implement, units }: StepQ
     signal,
   );
 
-/** Evaluates a controller on the user's own product, with the steps of its request, without traces. */
+/** Evaluates a controller on the user's own product, with the steps of its request. */
 export async function evaluateAsBuilt(
   subject: CallSubject,
   controller: Controller,
   implement: Implement,
   request: TuningRequest,
 ): Promise<Entry> {
-  const asked = { ...request, implement, evaluate: { ...request.evaluate, points: 0 } };
-  const body = evaluateBody(asked, subject, [controller]);
+  const body = evaluateBody({ ...request, implement }, subject, [controller]);
   return (await entriesOf(body))[0]!;
 }
 

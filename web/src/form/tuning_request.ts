@@ -141,5 +141,11 @@ export const asksForAll = (tune: TuningRequest["tune"]): boolean =>
 
 export const EVERY_METHOD: TuneEntry[] = [{ method: "all" }];
 
-/** The same subject, tuned by every method. */
-export const byAllMethods = (request: TuningRequest): TuningRequest => ({ ...request, tune: EVERY_METHOD });
+/** The same subject, tuned by every method; a design's own limits on Ms and Mt hold for the comparison too. */
+export function byAllMethods(request: TuningRequest): TuningRequest {
+  const design = Array.isArray(request.tune) && request.tune.length === 1 ? request.tune[0]! : null;
+  const limits = Object.fromEntries(
+    (["Ms", "Mt"] as const).flatMap((name) => (design?.method === "robust" && typeof design[name] === "number" ? [[name, design[name]]] : [])),
+  );
+  return { ...request, tune: EVERY_METHOD.map((every) => ({ ...every, ...limits })) };
+}

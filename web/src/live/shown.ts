@@ -29,9 +29,11 @@ export interface Shown {
   whole: boolean;
 }
 
-/** The job's request with the one member changed that a slider moves. */
-export const alteredBy = ({ request, result, index }: Modifiable, tune: TuneEntry): TuningRequest =>
-  withTune(request, result, index, tune);
+/** The job's request with the one member changed that a slider moves. A design over the record's region stays one. */
+export function alteredBy({ request, result, index }: Modifiable, tune: TuneEntry): TuningRequest {
+  const held = result.controllers[index]?.over_region && rowCount(request) === 1;
+  return { ...withTune(request, result, index, tune), ...(held ? { uncertainty: "identified" } : {}) };
+}
 
 /** Rows of the request; a single one is computed completely while a slider is held. */
 const rowCount = (request: TuningRequest): number => (Array.isArray(request.tune) ? request.tune.length : 1);

@@ -2,6 +2,7 @@
 import type { Controller, Entry, Method, OptionSlider, Schema, TuneEntry } from "../api/types.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { namedUnit, quotient } from "../words/numbers.ts";
+import { running } from "../words/running.ts";
 
 export interface SliderSpec {
   /** Its option with dots between the parts, or the setting's name; also used in the address. */
@@ -94,8 +95,7 @@ const FIGURES: Record<NonNullable<OptionSlider["value_of"]>, (entry: Entry) => n
   Mks: ({ robustness }) => robustness?.Mks ?? null,
   Tf: filterTime,
   Tf_over_Td: (entry) => (entry.controller?.Td ? quotientOf(filterTime(entry), entry.controller.Td) : null),
-  overshoot_percent: ({ implemented, performance }) =>
-    given((implemented?.performance ?? performance)?.setpoint?.["overshoot_percent"]),
+  overshoot_percent: (entry) => given(running(entry).performance?.setpoint?.["overshoot_percent"]),
 };
 
 const quotientOf = (a: number | null, b: number): number | null => (a === null ? null : a / b);

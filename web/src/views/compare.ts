@@ -42,7 +42,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     onExport: exportTable,
   });
   const table = comparisonTable({ onSort: sortBy, onDraw: choose });
-  const star = h("p", { class: "hint" }, "* the least load IAE that any PID reaches on this plant at the same Ms.");
+  const star = h("p", { class: "hint" }, "* the load IAE of the robust PID whose limits on Ms and Mt are both the Ms of the row, with the usual filter. A row with a larger Mt or another filter can lie below it.");
   const legend = h("p", { class: "pane-legend overlay-legend" });
   const plots = plotGrid(announce);
   const tradeoff = tradeoffCard(announce);

@@ -14,6 +14,7 @@ import { comparisonRows, notesSummary, reasonOf, settles, sortRows } from "../wo
 import type { ComparisonColumn, ComparisonOrder, ComparisonRow } from "../words/comparison.ts";
 import type { ExplainedName } from "../words/explained.ts";
 import { DASH } from "../words/numbers.ts";
+import { running } from "../words/running.ts";
 
 export interface ComparisonTable {
   element: HTMLElement;
@@ -175,7 +176,7 @@ export function comparisonTable(events: ComparisonEvents): ComparisonTable {
     row.line.replaceChildren(...(look === null ? [] : [swatch(look), name]));
     row.element.classList.toggle("drawn", look !== null);
     for (const { cell, signal } of row.sparks) {
-      const response = row.entry.responses?.[signal];
+      const response = running(row.entry).responses?.[signal];
       if (!response || !scales) continue;
       const trace = { name: "", look: look ?? ("data" as const), x: response.t, y: response.y };
       cell.replaceChildren(svgElement(spark(trace, scales[signal])));
@@ -216,7 +217,7 @@ function sparkScales(rows: ComparisonRow[], step: number): Record<Signal, SparkS
   const good = rows.filter(({ entry }) => entry.robustness?.stable && entry.responses);
   const better = good.slice(0, Math.max(1, Math.ceil(0.75 * good.length)));
   const scale = (signal: Signal, level: number): SparkScale => {
-    const traces = better.flatMap(({ entry }) => entry.responses?.[signal] ?? []);
+    const traces = better.flatMap(({ entry }) => running(entry).responses?.[signal] ?? []);
     const ends = traces.map((trace) => trace.t[trace.t.length - 1] ?? 0).sort((a, b) => a - b);
     const y = extent([...traces.map((trace) => trace.y), [0, level]], "linear");
     return { x: [0, ends[Math.floor(ends.length / 2)] ?? 1], y, level };

@@ -2,7 +2,7 @@
 import { cancelJob } from "../api/jobs.ts";
 import { isRangeRequest } from "../api/range.ts";
 import { isFinal, nameOf } from "../api/types.ts";
-import type { Job, Result, TuningRequest } from "../api/types.ts";
+import type { Entry, Job, Result, TuningRequest } from "../api/types.ts";
 import { defaultDrawn, drawnEntries, entryNames, proposedEntry } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { recordFrame } from "../charts/record.ts";
@@ -21,6 +21,7 @@ import type { Store, Workspace } from "../store.ts";
 import { figureGroups } from "../words/figures.ts";
 import { unitNames } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
+import { running } from "../words/running.ts";
 import { cureButtons } from "./cures.ts";
 import { operatingCard } from "./cards/operating_card.ts";
 import { ownStepCard } from "./cards/own_step_card.ts";
@@ -63,7 +64,7 @@ export interface DesignEvents extends JobEvents {
 
 export function designView(store: Store, announce: (sentence: string) => void, events: DesignEvents): View {
   const comparison = h("a", { href: "#/" }, "Comparison table");
-  const { all, trouble, cancel, complain } = jobActions(store, events, "quiet");
+  const { all, trouble, cancel, complain } = jobActions(store, events, "quiet", () => (screenOf === store.get().job?.id ? screen?.request : undefined));
   const title = titleCard("Design", announce, comparison, all);
   const verdict = h("section", { class: "verdict", "aria-label": "Verdict" });
   const cures = cureButtons((request) => events.onTune(request).catch(complain));
@@ -73,10 +74,12 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   let waiting: Job | null = null;
   let mainFigures: HTMLElement = h("div", {});
   let otherFigures: HTMLElement = h("div", {});
+  const ofController = h("p", { class: "hint", hidden: true }, "On your controller, with its own rules and rounding.");
   const figures = h(
     "section",
     { class: "card figures-card", "aria-labelledby": "figures-title" },
     h("h2", { id: "figures-title" }, "Figures"),
+    ofController,
     mainFigures,
     h("details", {}, h("summary", {}, "All figures"), otherFigures),
   );
@@ -87,6 +90,11 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     announce,
     retune: retuneWhole,
     onByHand: (settings) => modified.setByHand(settings),
+    onJudged(entry) {
+      if (entry === null && judged === null) return;
+      judged = entry;
+      if (finished) showMoving(finished.job, finished.result, store.get(), false);
+    },
   });
   const reports = reportCards(announce, { onRetune: retune, onTry: own.follow });
   const reportsAt = (place: "above" | "below") => reports.filter((card) => card.place === place).map((card) => card.element);
@@ -102,6 +110,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const linearNote = h("p", { class: "hint", hidden: true }, LINEAR_NOTE);
   let finished: { job: Job; result: Result } | null = null;
   let screen: OnScreen | null = null;
+  /** The displayed controller in a product for which it was not designed. */
+  let judged: Entry | null = null;
   /** The job on the cards. */
   let screenOf = "";
   /** Shows the verdict, with what it says of the step that was typed. */
@@ -196,7 +206,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   function showFigures(result: Result, listed: number[], drawn: Drawn[], names: string[], units: UnitNames, held: boolean): void {
     const columns = listed.map((index) => {
       const shown = drawn.find((item) => item.index === index);
-      const entry = result.controllers[index]!;
+      const entry = running(result.controllers[index]!);
       return { name: names[index]!, entry, swatch: () => (shown ? swatch(shown.look) : null) };
     });
     const groups = figureGroups(
@@ -208,6 +218,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       const main = figuresTable("Main figures", columns, groups.filter((group) => group.main));
       mainFigures.replaceWith(main);
       mainFigures = main;
+      ofController.hidden = !columns.some(({ entry }) => entry.implemented);
       // Folded parts are updated on release.
       if (held) return;
       const others = figuresTable("All other figures", columns, groups.filter((group) => !group.main));
@@ -216,12 +227,22 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     });
   }
 
+  /** With the loop of the product into which the settings are to be typed, where it is not that of the job. */
+  function asTyped(result: Result, index: number): Result {
+    const entry = result.controllers[index]!;
+    if (!judged || JSON.stringify(judged.controller) !== JSON.stringify(entry.controller)) return result;
+    const { implemented, verdict = [], warnings = [] } = judged;
+    const typed = { ...entry, verdict, warnings, ...(implemented ? { implemented } : {}) };
+    return { ...result, controllers: result.controllers.map((other, at) => (at === index ? typed : other)) };
+  }
+
   /** Updates the parts that follow a slider: verdict, settings, figures and plots. */
   function showMoving(job: Job, whole: Result, workspace: Workspace, held: boolean): Drawn[] {
     const modifiedNow = modified.onScreen(job, whole, selectedEntry(whole, workspace));
     screen = { ...modifiedNow, request: modifiedNow.request && withStep(modifiedNow.request) };
-    const { result, index, origin } = screen;
-    title.setShown(screen, result === whole && !workspace.step);
+    const { index, origin } = screen;
+    title.setShown(screen, screen.result === whole && !workspace.step);
+    const result = asTyped(screen.result, index);
     const entries = result.controllers;
     const names = entryNames(entries);
     const units = unitNames(job.request?.units);

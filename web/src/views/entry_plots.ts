@@ -10,6 +10,7 @@ import type { PlotGrid } from "../plot/grid.ts";
 import { peakOf } from "./grips.ts";
 import type { Grips } from "./grips.ts";
 import { commonLimits } from "../words/limits.ts";
+import { running } from "../words/running.ts";
 
 /** `selected`: the entry whose linearised response is drawn as well if there are many, and which `grips` drag. */
 export function showEntryPlots(
@@ -19,18 +20,22 @@ export function showEntryPlots(
   selected?: number,
   grips: Grips | null = null,
 ): void {
-  const responses = drawn.some((item) => item.entry.responses);
+  const loops = drawn.map((item) => ({ ...item, entry: running(item.entry) }));
+  const responses = loops.some((item) => item.entry.responses);
+  // The curves over frequency are known of the ideal loop alone.
+  const ideal = drawn.some((item) => item.entry.implemented);
+  const named = (frame: Frame): Frame => (ideal ? { ...frame, title: `${frame.title}, ideal` } : frame);
   const frequency = drawn.some((item) => item.entry.frequency);
   const limits = commonLimits(drawn.map((item) => item.entry));
   const held = drawn.find(({ index }) => index === selected);
   const response = (kind: "setpoint" | "load"): Frame => {
     const grip = held && grips?.peak(kind, request?.evaluate?.setpoint_step ?? 1);
-    return responseFrame(kind, drawn, request, selected, grip && { ...grip, at: peakOf(held.entry, kind), look: held.look });
+    return responseFrame(kind, loops, request, selected, grip && { ...grip, at: peakOf(held.entry, kind), look: held.look });
   };
   const grip = held && grips?.nyquist();
   plots.show("setpoint", responses ? response("setpoint") : null);
   plots.show("load", responses ? response("load") : null);
-  plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request, grip && { ...grip, index: held.index }) : null);
+  plots.show("nyquist", frequency ? named(nyquistFrame(drawn, limits, request, grip && { ...grip, index: held.index })) : null);
   const curves = (): Frame => ({ ...sensitivityFrame(drawn, limits, request), alternative: bodeFrame(drawn, request) });
-  plots.show("sensitivities", frequency ? curves() : null);
+  plots.show("sensitivities", frequency ? named(curves()) : null);
 }

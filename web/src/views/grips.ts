@@ -4,6 +4,7 @@ import type { Entry, TuneEntry } from "../api/types.ts";
 import { pursue } from "../live/pursuit.ts";
 import type { KnownFigure } from "../live/pursuit.ts";
 import type { OnDrag } from "../plot/frame.ts";
+import { running } from "../words/running.ts";
 
 /** A slider that a drag can move. */
 export interface MovableSlider {
@@ -37,7 +38,7 @@ export interface Grips {
 }
 
 export const peakOf = (entry: Entry, kind: "setpoint" | "load"): { t: number; y: number } | null => {
-  const { t = [], y = [] } = entry.responses?.[kind] ?? {};
+  const { t = [], y = [] } = running(entry).responses?.[kind] ?? {};
   const size = (value: number | null): number => (kind === "load" ? Math.abs(value ?? 0) : (value ?? -Infinity));
   // A set-point step down has its peak at the bottom.
   const down = kind === "setpoint" && (y.at(-1) ?? 0) < 0;

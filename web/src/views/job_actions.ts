@@ -88,7 +88,13 @@ export function jobTable(label: string, heads: HTMLElement[], rows: HTMLElement)
   return h("div", { class: "scroll", role: "region", "aria-label": label, tabindex: 0 }, table);
 }
 
-export function jobActions(store: Store, events: JobEvents, look = ""): JobActions {
+/** `displayed`: the request of what is on the screen, if that is not the job's own. */
+export function jobActions(
+  store: Store,
+  events: JobEvents,
+  look = "",
+  displayed: () => TuningRequest | undefined = () => undefined,
+): JobActions {
   const all = h("button", { type: "button", class: look, onclick: () => void compareAll() }, "Compare all methods");
   const { element: trouble, complain } = troubleLine("status");
 
@@ -98,7 +104,7 @@ export function jobActions(store: Store, events: JobEvents, look = ""): JobActio
   }
 
   async function compareAll(): Promise<void> {
-    const request = store.get().job?.request;
+    const request = displayed() ?? store.get().job?.request;
     if (!request) return;
     all.disabled = true;
     await events.onCompareAll(request).catch(complain);

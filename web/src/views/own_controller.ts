@@ -68,9 +68,12 @@ export interface OwnControllerEvents {
   retune(request: TuningRequest): Promise<void>;
   /** Settings that were typed in the card: shown as set by hand. */
   onByHand(settings: SettingsByHand): void;
+  /** The entry's controller was evaluated on a product for which the job was not designed; null: the job's own loop is
+      that of the settings. */
+  onJudged(entry: Entry | null): void;
 }
 
-export function ownController(store: Store, { announce, retune, onByHand }: OwnControllerEvents): OwnController {
+export function ownController(store: Store, { announce, retune, onByHand, onJudged }: OwnControllerEvents): OwnController {
   let shown: Shown | null = null;
   let mine: MyController | null = store.get().mine;
   let form: TextbookForm = rememberedForm();
@@ -98,9 +101,10 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
 
   const calls = latest<TypedQuestion, TypedAnswer>(askTyped, {
     onBusy: answer.setBusy,
-    onAnswer({ product, entered, judged }) {
+    onAnswer({ product, entered, judged }, { controller }) {
       if (!shown) return;
       showTyped(product, entered, judged ?? (tried ? null : shown.result.controllers[shown.index]!));
+      if (!tried) onJudged(judged && { ...judged, controller });
       if (!tried) announce(`Settings of ${shown.name} for ${mine?.name ?? product.name} are shown.`);
     },
     onError: fail,
@@ -201,6 +205,8 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     const inForm = formOf(entry, form);
     const rows = formRows(entry, todayEntry(), inForm, units);
     const settings = settingsOf(entry, inForm, units);
+    // Settings of a textbook form must not stand under the name of a product.
+    if (mine) return answer.complain(["Type into", ` ${mine.name}`], "");
     const heading: Answer["heading"] = ["Settings to enter:", ` ${shown!.name}`];
     if (typeof rows === "string" || typeof settings === "string") return answer.complain(heading, String(rows));
     const text = settingsText(inForm, settings);
@@ -285,6 +291,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     const entry = shown?.result.controllers[shown.index];
     const controller = tried ?? entry?.controller;
     const implement = implementOf(mine);
+    if (!implement) onJudged(null);
     if (!shown || !entry || !controller || !implement) {
       dropQuestion();
       if (shown && entry) showForm();
@@ -296,6 +303,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     asked = key;
     const known = !tried && sameImplement(request.implement, implement) ? entry.as_entered : undefined;
     if (known) {
+      onJudged(null);
       calls.drop();
       answer.setBusy(false);
       getProduct(implement.product).then(
@@ -372,10 +380,12 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     showMine();
   }
 
-  function takeMine({ request, units }: Shown): void {
+  function takeMine({ request, result, units }: Shown): void {
     mine = mineOfRequest(request.implement, inUnits(mine, units));
     picker.set(mine);
     nameMine();
+    picker.setOutput(result.model?.fit?.u ?? request.record?.u ?? []);
+    picker.setUnits(units);
     showMine();
   }
 
@@ -393,8 +403,6 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       if (!sameJob || before?.index !== next.index) tried = null;
       shown = next;
       if (!sameJob) {
-        picker.setUnits(next.units);
-        picker.setOutput(next.result.model?.fit?.u ?? next.request.record?.u ?? []);
         takeMine(next);
         showTodays();
       } else if (bringsProduct(before.request, next.request)) takeMine(next);

@@ -5,6 +5,7 @@ import type { ExplainedName } from "./explained.ts";
 import { figureUnit } from "./figure_units.ts";
 import { formatNumber, formatPercent, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
+import { running } from "./running.ts";
 
 export interface ComparisonRow {
   /** Position of the entry in the result. */
@@ -91,9 +92,9 @@ export function comparisonColumns(units: UnitNames): ComparisonColumn[] {
         : figureOf(part(entry), name, absent, format);
   };
   const controller = (entry: Entry): Part => entry.controller as Part;
-  const robustness = (entry: Entry): Part => entry.robustness;
-  const loadStep = (entry: Entry): Part => entry.performance?.load;
-  const setpoint = (entry: Entry): Part => entry.performance?.setpoint;
+  const robustness = (entry: Entry): Part => running(entry).robustness;
+  const loadStep = (entry: Entry): Part => running(entry).performance?.load;
+  const setpoint = (entry: Entry): Part => running(entry).performance?.setpoint;
   return [
     column("Kp", withUnit("Kp", gain), "proportional gain", true, of(controller, "Kp", "no proportional action")),
     column("Ti", withUnit("Ti", units.time), "integral time", true, of(controller, "Ti", "no integral action")),
@@ -120,7 +121,7 @@ export function comparisonColumns(units: UnitNames): ComparisonColumn[] {
     column(
       "excess",
       "+% over optimum*",
-      "of the load IAE over the least of any PID on this plant at the same Ms",
+      "of the load IAE over that of the robust PID whose limits on Ms and Mt are both this row's Ms",
       true,
       (entry) => figureOf(entry.optimum_at_Ms, "excess_percent", "It was not compared with the optimum.", excessText),
     ),

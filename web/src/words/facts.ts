@@ -5,6 +5,7 @@ import { limitNote } from "./figures.ts";
 import { figureUnit } from "./figure_units.ts";
 import { formatNumber, formatPercent, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
+import { running } from "./running.ts";
 
 export interface Fact {
   label: string;
@@ -22,10 +23,10 @@ const numberOf = (part: unknown, name: string): number | null => {
 
 /** Facts without a figure are left out. `today`: the entry of today's settings. */
 export function factsOf(entry: Entry, today: Entry | undefined, units: UnitNames): Fact[] {
-  const { robustness, performance } = entry.implemented ?? entry;
-  const worst = numberOf(entry.region, "worst_Ms");
+  const { robustness, performance, region } = running(entry);
+  const worst = numberOf(region, "worst_Ms");
   const load = numberOf(performance?.load, "IAE");
-  const before = today && today !== entry ? numberOf((today.implemented ?? today).performance?.load, "IAE") : null;
+  const before = today && today !== entry ? numberOf(running(today).performance?.load, "IAE") : null;
   const overshoot = numberOf(performance?.setpoint, "overshoot_percent");
   const facts: { label: string; about: ExplainedName; number: number | null; text: (value: number) => string; reference: string }[] = [
     { label: worst === null ? "Ms" : "Worst Ms", about: worst === null ? "Ms" : "worst_Ms", number: worst ?? numberOf(robustness, "Ms"), text: formatNumber, reference: "" },

@@ -53,8 +53,9 @@ export function candidatesCard(methods: string[], first: CandidateChoice, events
       "div",
       { class: "check" },
       whole,
-      h("label", { for: whole.id }, "Meet the limits for every model consistent with the record"),
+      h("label", { for: whole.id }, "Always meet the limits for every model consistent with the record"),
     ),
+    h("p", { class: "hint" }, "Otherwise only where the design for this model alone breaks them."),
     h("div", { class: "actions" }, tune),
     h("div", { class: "actions" }, all),
     methods.length > 0

@@ -89,7 +89,7 @@ export function myControllerCard(
     errors,
   );
   sampling.input.addEventListener("change", change);
-  const needed = h("p", { class: "hint", role: "status", hidden: true });
+  const needed = h("p", { class: forms ? "trouble" : "hint", role: "status", hidden: true });
   const fields = h("div", { class: "needs", hidden: true }, measurement.element, output.element, sampling.element);
   const forget = h("button", { type: "button", class: "quiet", hidden: true, onclick: () => choose(undefined) }, "No controller");
   const facts = h("details", { class: "facts", hidden: true }, h("summary", {}, "Ranges and sample time"));

@@ -18,7 +18,8 @@ export interface ReplayCard {
 
 type Replay = NonNullable<Entry["replay"]>;
 
-const CHANGED = "Changed settings are not replayed; a design is replayed when it is kept.";
+/** The reason why a design on the screen has no replay. */
+export const CHANGED = "Changed settings are not replayed; a design is replayed when it is kept.";
 
 /** `plots`: the grid for its plot. */
 export function replayCard(plots: PlotGrid): ReplayCard {

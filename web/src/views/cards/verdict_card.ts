@@ -6,6 +6,7 @@ import { factsOf } from "../../words/facts.ts";
 import type { Fact } from "../../words/facts.ts";
 import { withMinus } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
+import { CHANGED } from "./replay_card.ts";
 import { explained } from "../../reach/explanation.ts";
 import { timeUnitDoubt } from "../../words/quality.ts";
 
@@ -38,13 +39,16 @@ export function showVerdict(
       ? [h("li", {}, h("strong", {}, `${names[index]}: `), reasonOf(entry))]
       : [],
   );
+  // The replay of the design from which a slider moved away would be that of another loop.
+  const selectedEntry = entries[selected]!;
+  const notReplayed = Boolean(result.replay && !result.replay.refused && selectedEntry.controller && !selectedEntry.replay);
   card.className = `verdict ${LEVEL_CLASS[head.level]}`;
   const today = entries.find((entry) => entry.method === "baseline");
   const facts = factsOf(entries[selected]!, today, units).map(factElement);
   card.replaceChildren(
     h("h2", {}, who, withMinus(head.text)),
     facts.length > 0 ? h("dl", { class: "facts" }, facts) : "",
-    h("p", {}, [...stopped, ...others].map(said)),
+    h("p", {}, [...stopped, ...others].map(said), notReplayed ? CHANGED : ""),
   );
   if (failures.length > 0) card.append(h("ul", {}, failures));
   const doubt = result.model ? timeUnitDoubt(result.model) : "";

@@ -11,18 +11,27 @@ import { peakOf } from "./grips.ts";
 import type { Grips } from "./grips.ts";
 import { commonLimits } from "../words/limits.ts";
 
-/** `selected`: the entry whose linearised response is drawn as well if there are many, and which `grips` drag. */
+/** The entry that can be moved. */
+export interface Selected {
+  /** Its linearised response is drawn as well if there are many. */
+  index: number;
+  /** They drag it. */
+  grips: Grips | null;
+  /** The proposal from which it was moved. */
+  before: Drawn | null;
+}
+
 export function showEntryPlots(
   plots: PlotGrid,
-  drawn: Drawn[],
+  entries: Drawn[],
   request: TuningRequest | undefined,
-  selected?: number,
-  grips: Grips | null = null,
+  { index: selected, grips, before }: Partial<Selected> = {},
 ): void {
-  const responses = drawn.some((item) => item.entry.responses);
-  const frequency = drawn.some((item) => item.entry.frequency);
-  const limits = commonLimits(drawn.map((item) => item.entry));
-  const held = drawn.find(({ index }) => index === selected);
+  const responses = entries.some((item) => item.entry.responses);
+  const frequency = entries.some((item) => item.entry.frequency);
+  const limits = commonLimits(entries.map((item) => item.entry));
+  const drawn = before ? [...entries, before] : entries;
+  const held = entries.find(({ index }) => index === selected);
   const response = (kind: "setpoint" | "load"): Frame => {
     const grip = held && grips?.peak(kind, request?.evaluate?.setpoint_step ?? 1);
     return responseFrame(kind, drawn, request, selected, grip && { ...grip, at: peakOf(held.entry, kind), look: held.look });

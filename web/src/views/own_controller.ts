@@ -4,7 +4,7 @@ import { ApiError, sentenceOf } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
 import { callSubject } from "../api/live.ts";
 import { getProduct, knownProduct } from "../api/products.ts";
-import type { AsEntered, Controller, Entry, Job, Product, Result, SettingValue, TuningRequest } from "../api/types.ts";
+import type { AsEntered, Controller, Entry, Implement, Job, Product, Result, SettingValue, TuningRequest } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { choicesOf } from "../form/product_settings.ts";
@@ -45,6 +45,8 @@ interface Shown {
   mark: string;
   /** Other settings can be typed in their place. */
   typeable: boolean;
+  /** The result is that of everything that was moved and typed. */
+  isCurrent(): boolean;
 }
 
 export interface OwnController {
@@ -65,9 +67,11 @@ export interface OwnControllerEvents {
   retune(request: TuningRequest): Promise<void>;
   /** Settings that were typed in the card: shown as set by hand. */
   onByHand(settings: SettingsByHand): void;
+  /** Settings are being read, after which `onByHand` is called unless they are refused. */
+  onReading(reading: Promise<void>): void;
 }
 
-export function ownController(store: Store, { announce, retune, onByHand }: OwnControllerEvents): OwnController {
+export function ownController(store: Store, { announce, retune, onByHand, onReading }: OwnControllerEvents): OwnController {
   let shown: Shown | null = null;
   let mine: MyController | null = store.get().mine;
   let form: TextbookForm = rememberedForm();
@@ -86,7 +90,14 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     h("div", { class: "actions" }, redesign),
     trouble,
   );
-  const answer = answerCard({ announce, onType: typeInto }, {
+  const answer = answerCard({
+    announce,
+    onType(texts) {
+      const reading = typeInto(texts);
+      onReading(reading);
+      return reading;
+    },
+  }, {
     picker: picker.element,
     notes: picker.notes,
     folded: [picker.facts, today.element],
@@ -95,9 +106,10 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
 
   const calls = latest<TypedQuestion, TypedAnswer>(askTyped, {
     onBusy: answer.setBusy,
-    onAnswer({ product, entered, judged }) {
+    onAnswer({ product, entered, judged }, { implement, controller }) {
       if (!shown) return;
-      showTyped(product, entered, judged ?? (tried ? null : shown.result.controllers[shown.index]!));
+      const newest = keyOf(implement, controller) === asked;
+      showTyped(product, entered, judged ?? (tried ? null : shown.result.controllers[shown.index]!), newest);
       if (!tried) announce(`Settings of ${shown.name} for ${mine?.name ?? product.name} are shown.`);
     },
     onError(error) {
@@ -120,6 +132,9 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     showMine();
   }
 
+  const keyOf = (implement: Implement, controller: Controller): string =>
+    JSON.stringify([shown?.job.id, shown?.index, implement, controller]);
+
   const whose = (): string => [tried ? "the manual controller" : shown!.name, shown!.mark].filter(Boolean).join(", ");
 
   /** The job's entry of today's settings. */
@@ -133,7 +148,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     return { ...written, ...(baseline?.product === product.id ? baseline.settings : {}) };
   }
 
-  function showTyped(product: Product, entered: AsEntered, judged: Entry | null): void {
+  function showTyped(product: Product, entered: AsEntered, judged: Entry | null, newest = true): void {
     const heading = productTitle(product);
     const settled = tried ? null : judged;
     answer.show({
@@ -141,8 +156,9 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       whose: whose(),
       rows: productRows(product, entered, todaysTyped(product)),
       text: typedText(`${heading}: ${whose()}`, typedRows(product, entered)),
-      below: [...productTroubles(settled), ...snippetBlocks(entered, announce)],
+      below: [...productTroubles(settled, shown!.units.time), ...snippetBlocks(entered, announce)],
       details: productDetails(product, entered, settled, shown!.units.time),
+      current: newest && isCurrent(),
       choices: typeable() ? (name) => choicesOf(product, name) : null,
     });
   }
@@ -150,6 +166,10 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
   const typeable = (): boolean => !tried && shown!.typeable;
 
   let typings = 0;
+  /** Typings that are being read. */
+  let reading = 0;
+
+  const isCurrent = (): boolean => reading === 0 && shown!.isCurrent();
 
   /** Typed texts as a controller: in the product, or in the form. Only the last ones count, and only while the same
       entry is shown. */
@@ -160,6 +180,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
     const current = (): boolean => typing === typings && shown?.job.id === job.id && shown.index === index;
     const implement = implementOf(mine);
     const subject = callSubject(request, result);
+    reading += 1;
     try {
       const product = implement && (await getProduct(implement.product));
       const entry = result.controllers[index]!;
@@ -171,6 +192,8 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       if (!current()) return;
       const listed = error instanceof ApiError ? (error.problem.errors ?? []) : [];
       answer.refuse(listed[0]?.detail ?? sentenceOf(error));
+    } finally {
+      reading -= 1;
     }
   }
 
@@ -191,6 +214,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       text,
       below: [h("p", { class: "hint" }, formulaLine(inForm, entry))],
       details: [],
+      current: isCurrent(),
       choices: typeable() ? () => [] : null,
     });
   }
@@ -259,7 +283,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       return;
     }
     const request = shown.request;
-    const key = JSON.stringify([shown.job.id, shown.index, implement, controller]);
+    const key = keyOf(implement, controller);
     if (key === asked) return;
     asked = key;
     const known = !tried && sameImplement(request.implement, implement) ? entry.as_entered : undefined;

@@ -51,8 +51,13 @@ export function keepFocus(part: HTMLElement, update: () => void): void {
   if (!focused.isConnected) (alike()[at] ?? alike()[0])?.focus({ preventScroll: true });
 }
 
-/** A menu under a summary element closes when the focus leaves it, or by Escape. */
+/** A menu under a summary element stays inside the window, and closes when the focus leaves it, or by Escape. */
 export function closesItself(menu: HTMLDetailsElement): HTMLDetailsElement {
+  menu.addEventListener("toggle", () => {
+    menu.classList.remove("leftward");
+    const right = menu.lastElementChild?.getBoundingClientRect().right ?? 0;
+    menu.classList.toggle("leftward", menu.open && right > document.documentElement.clientWidth);
+  });
   menu.addEventListener("focusout", (event) => {
     if (!(event.relatedTarget instanceof Node && menu.contains(event.relatedTarget))) menu.open = false;
   });

@@ -357,3 +357,64 @@ test("from a heater's log to the lines of printer.cfg: three clicks", async () =
     assert.deepEqual(who.counts, { clicks: 3, fields: 1 });
   });
 });
+
+test("values typed one after another without a pause, or pasted, are all kept, whenever the answers come", async () => {
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    await openLoop(page);
+    await settled();
+    // Each answer comes while the next value is typed.
+    await page.route("**/v1/design", async (route) => {
+      await new Promise((resolve) => setTimeout(resolve, 150));
+      await route.continue();
+    });
+    await page.getByRole("button", { name: "Type other values" }).click();
+    const field = (name) => page.getByRole("textbox", { name: `${name}, new` });
+    await field("GAIN").selectText();
+    for (const [name, text] of [["GAIN", "1.1"], ["RESET", "75"], ["RATE", "2.5"]]) {
+      assert.equal(await field(name).evaluate((input) => document.activeElement === input), true, name);
+      await page.keyboard.press("Control+a");
+      await page.keyboard.type(text, { delay: 60 });
+      await page.keyboard.press("Tab");
+      await page.keyboard.press("Tab");
+    }
+    await settled();
+    const shown = async () => [await field("GAIN").inputValue(), await field("RESET").inputValue(), await field("RATE").inputValue()].map(Number);
+    assert.deepEqual(await shown(), [1.1, 75, 2.5]);
+    const { settings } = (await requestHandedOut(page)).controllers[0];
+    assert.deepEqual([settings.GAIN, settings.RESET, settings.RATE], [1.1, 75, 2.5]);
+    // A pasted text is one event.
+    await field("RATE").selectText();
+    await page.keyboard.insertText("3");
+    await page.keyboard.press("Shift+Tab");
+    await page.keyboard.press("Shift+Tab");
+    await page.keyboard.press("Control+a");
+    await page.keyboard.insertText("60");
+    await page.keyboard.press("Tab");
+    await settled();
+    assert.deepEqual(await shown(), [1.1, 60, 3]);
+  });
+});
+
+test("a value that is typed while an answer is on its way is that of the kept design", async () => {
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    const { id } = await openLoop(page);
+    await settled();
+    await page.getByRole("button", { name: "Type other values" }).click();
+    const gain = page.getByRole("textbox", { name: "GAIN, new" });
+    await gain.fill("1.2");
+    await gain.press("Enter");
+    await page.getByRole("button", { name: "Keep these settings" }).waitFor();
+    await page.route("**/v1/design", async (route) => {
+      await new Promise((resolve) => setTimeout(resolve, 300));
+      await route.continue();
+    });
+    await gain.fill("1.05");
+    await page.getByRole("button", { name: "Keep these settings" }).click();
+    await page.waitForFunction((first) => !location.hash.includes(first), id);
+    await settled();
+    const { controllers } = (await tests.jobOf(page)).request;
+    assert.equal(controllers[0].settings.GAIN, 1.05);
+  });
+});

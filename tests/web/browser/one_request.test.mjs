@@ -203,6 +203,41 @@ test("a job opens on the entry that its answer says to take", async () => {
   });
 });
 
+test("after a comparison of all methods a slider and a value by hand ask for one design, which can be kept", async () => {
+  const plant = { type: "transfer_function", num: [1], den: [1, 4, 6, 4, 1] };
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    const { id, result } = await post("v1/jobs", { plant, tune: [{ method: "all" }] });
+    assert.ok(result.controllers.length > 50, "more than a request may list");
+    const drawn = () => page.locator(".legend .legend-item").allInnerTexts();
+    const refused = [];
+    page.on("response", (response) => response.status() === 422 && refused.push(response.url()));
+    await page.goto(new URL(`#/jobs/${id}/design`, page.url()).href);
+    await slider(page, "Robustness Ms").waitFor();
+    const before = await drawn();
+    await slider(page, "Robustness Ms").focus();
+    await page.keyboard.press("Shift+ArrowRight");
+    await page.waitForURL(/Ms=/);
+    await settled();
+    assert.deepEqual(await drawn(), [...before, "proposal"], "the same rows, and the proposal from which one was moved");
+    const { request } = await assertRequestIsShown(page, post, "one step");
+    assert.equal(request.tune.length, 1);
+    const Kp = page.locator(".controls").getByRole("textbox", { name: "Kp" });
+    await Kp.fill("1");
+    await Kp.press("Enter");
+    await page.waitForURL(/Kp=1/);
+    await settled();
+    assert.deepEqual(await drawn(), [...before, "proposal"]);
+    const modified = await designOnScreen(page);
+    await page.getByRole("button", { name: "Keep these settings" }).click();
+    await page.waitForFunction((first) => !location.hash.includes(first), id);
+    await settled();
+    assert.deepEqual((await designOnScreen(page)).settings, modified.settings);
+    await page.getByRole("link", { name: "Change sheet" }).waitFor();
+    assert.deepEqual(refused, []);
+  });
+});
+
 const replayCard = (page) => page.getByRole("region", { name: "Replay of the record", exact: true });
 
 test("the record of a loop is drawn again with the new settings, and its figures are those of the answer", async () => {

@@ -30,12 +30,15 @@ test("the slider of Ms designs anew; undo, redo and the proposal lead back, the 
     const wanted = await designAt(page, 1.53);
     await shows(page, "Kp", wanted.controller.Kp);
     await page.waitForFunction(() => /^Ms 1\.53, load IAE \d/.test(document.querySelector(".controls input[type=range]").getAttribute("aria-valuetext")));
-    await tracesShown(page, "Nyquist curve of L", 2);
+    // The design, the proposal from which it was moved, and today's settings.
+    await tracesShown(page, "Nyquist curve of L", 3);
+    await page.getByText("proposal", { exact: true }).first().waitFor();
     await page.reload();
     await slider(page, "Robustness Ms").waitFor();
     await shows(page, "Kp", wanted.controller.Kp);
     await page.getByRole("button", { name: "Back to the proposal" }).click();
     await shows(page, "Kp", proposal);
+    await tracesShown(page, "Nyquist curve of L", 2);
     assert.doesNotMatch(page.url(), /Ms=/);
     await page.keyboard.press("Control+z");
     await shows(page, "Kp", wanted.controller.Kp);

@@ -12,6 +12,7 @@ import { durationWords } from "../../../web/src/words/numbers.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
 import {
   excessText,
+  isCompared,
   comparisonColumns,
   comparisonNames,
   comparisonRows,
@@ -224,7 +225,7 @@ test("the table's address keeps its order and its chosen rows", () => {
   assert.deepEqual(parseRoute("#/jobs/a1/compare?rows=x&Ms=1"), { screen: "compare", job: "a1", sort: "", rows: null });
 });
 
-test("a comparison of all methods is tuned again as the variants that it ran", () => {
+test("one design of a comparison of all methods is tuned again alone", () => {
   const ran: Result = {
     controllers: [
       { method: "simc", options: { controller: "PI", tau_c: null } },
@@ -237,7 +238,6 @@ test("a comparison of all methods is tuned again as the variants that it ran", (
   const request = byAllMethods({ plant: { type: "fopdt" }, tune: [{ method: "robust" }] });
   assert.deepEqual(request.tune, [{ method: "all" }]);
   assert.deepEqual(withLambda(request, ran, 1, 7, methods).tune, [
-    { method: "simc", controller: "PI" },
     { method: "rimc", lambda: 7, curve: true },
   ]);
 });
@@ -318,4 +318,10 @@ test("a link to a job says how long it works", () => {
   assert.match(keptWords(null, 3600), /for 1 hour after its end/);
   assert.match(keptWords(null, 0), /without limit/);
   assert.doesNotMatch(keptWords("2026-03-02T08:00:00Z", undefined), /undefined|NaN|Invalid/);
+});
+
+test("rows without the optimum are not ranked by the excess over it", () => {
+  const entry = (optimum_at_Ms?: Entry["optimum_at_Ms"]): Entry => ({ method: "robust", ...(optimum_at_Ms ? { optimum_at_Ms } : {}) });
+  assert.equal(isCompared({ controllers: [entry(), entry({ excess_percent: null } as never)] }), false);
+  assert.equal(isCompared({ controllers: [entry(), entry({ excess_percent: 0 } as never)] }), true);
 });

@@ -128,8 +128,25 @@ test("a time that the service says not to be determined is said to be unknown, w
   assert.deepEqual(parameterTexts({ ...fopdt, undetermined: ["L"] }, units), [
     "K 1.250 ± 0.012 °C/%",
     "T 40.00 ± 0.31 s",
-    "L 8 ± unknown s",
+    "L 8 s, not determined by the record",
   ]);
+});
+
+test("an error beyond the value is no error of it: the record does not determine the parameter", () => {
+  const loose: Candidate = { ...fopdt, plant: { type: "fopdt", K: 2, T: 40, L: 3.812 }, standard_errors: { K: 0.1, T: 40, L: 370 } };
+  assert.deepEqual(parameterTexts(loose, units), ["K 2.00 ± 0.10 °C/%", "T 40 ± 40 s", "L 3.812 s, not determined by the record"]);
+  const zero: Candidate = {
+    plant: { type: "transfer_function", num: [698.8, 1.601], den: [78170, 616.2, 1], L: 30 },
+    fit_percent: 98,
+    standard_errors: { L: 0.25, K: 0.0025, a1: 2100, a2: 4.3e5, b: 17 },
+  };
+  assert.deepEqual(parameterTexts(zero, units).slice(1), [
+    "K ± 0.0025",
+    "a1, not determined by the record",
+    "a2, not determined by the record",
+    "b ± 17",
+  ]);
+  assert.deepEqual([formatError(370, 3.812), formatError(0.2, 3.812)], ["not determined", "0.20"]);
 });
 
 test("what the service concludes of a model is shown, whatever its figures are", () => {

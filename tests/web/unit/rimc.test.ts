@@ -98,7 +98,6 @@ test("another lambda replaces what stood for it, in its own entry only, and asks
     { Tf_over_Td: 0.1, method: "rimc", lambda: 7, curve: true },
   ]);
   assert.deepEqual(withLambda({ ...request, tune: "all" }, result, 1, 7, methods).tune, [
-    { method: "robust" },
     { method: "rimc", lambda: 7, curve: true },
   ]);
   assert.equal((request.tune as { lambda?: number }[])[1]!.lambda, undefined);

@@ -4,7 +4,7 @@ import { designBody } from "../../../web/src/api/live.ts";
 import type { Entry, Result, TuneEntry, TuningRequest } from "../../../web/src/api/types.ts";
 import { proposedEntry } from "../../../web/src/charts/drawn.ts";
 import { byAllMethods, rowsOf, tuneEntryOf, withTune } from "../../../web/src/form/tuning_request.ts";
-import { designShown, questionOf } from "../../../web/src/live/shown.ts";
+import { designShown, manualShown, questionOf } from "../../../web/src/live/shown.ts";
 import { keptOtherwise } from "../../../web/src/words/kept.ts";
 
 const controller = { form: "ideal", Kp: 2, Ti: 10, Td: 2 };
@@ -26,8 +26,20 @@ test("both entries of a row that holds on the region belong to that row", () => 
   for (const index of [1, 2]) assert.deepEqual(tuneEntryOf(request, result, index), tune[1]);
   assert.equal(tuneEntryOf(request, result, 4), null);
   assert.deepEqual(withTune(request, result, 2, { method: "robust", Ms: 2 }).tune, [tune[0], { method: "robust", Ms: 2 }, tune[2]]);
-  const all = { ...request, tune: "all" };
-  assert.equal((withTune(all, result, 3, { method: "robust" }).tune as TuneEntry[]).length, 3, "the pair is one row");
+});
+
+test("of a comparison of all methods the moved row alone is asked, and the others stay on the screen", () => {
+  const all = { plant: { type: "fopdt" }, tune: [{ method: "all" }] };
+  const many = [entry("simc"), ...Array.from({ length: 60 }, (_, k) => entry("lambda", { options: { lambda: k } })), entry("robust"), today];
+  const from = { request: all, result: { controllers: many, ranking: [61, 0], verdict: [] }, index: 61 };
+  const modified = { method: "robust", Ms: 1.6 };
+  for (const held of [true, false]) assert.deepEqual(questionOf(from, modified, held)["tune"], [modified]);
+  const shown = designShown(from, modified, { controllers: [entry("robust", { title: "new" }), today], ranking: [0] }, false);
+  assert.deepEqual(shown.request.tune, [modified]);
+  assert.deepEqual([shown.index, shown.kept, shown.result.controllers.length, shown.whole], [61, 0, 63, true]);
+  assert.deepEqual([shown.result.controllers[61]!.title, shown.result.ranking], ["new", undefined]);
+  const byHand = manualShown(from, { tune: modified, manual: controller as never }, { controllers: [entry("given"), today] });
+  assert.deepEqual([byHand.request.tune, byHand.request.controllers?.length, byHand.kept, byHand.index], [[{ method: "robust" }], 1, 1, 61]);
 });
 
 test("a job that was stopped early has entries of the rows that it came to", () => {

@@ -106,8 +106,8 @@ export function tryCard(document: ApiDocument, call: Call, carried: CarriedReque
   const form = h(
     "form",
     { class: "try-form", "aria-labelledby": title.id, novalidate: true },
-    fields.length > 0 ? h("div", { class: "parameters" }, fields.map(({ element }) => element)) : "",
-    hasBody ? h("div", { class: "parameters" }, types.length > 1 ? labelled("Media type", media) : "", labelled("Begin with", choice)) : "",
+    fields.length > 0 ? h("div", { class: "call-parameters" }, fields.map(({ element }) => element)) : "",
+    hasBody ? h("div", { class: "call-parameters" }, types.length > 1 ? labelled("Media type", media) : "", labelled("Begin with", choice)) : "",
     hasBody ? labelled("Request", body) : "",
     h("div", { class: "actions" }, send, copyButton({ label: "Copy as curl", look: "quiet", text: curl }, announce)),
     state,

@@ -73,6 +73,8 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
   field.input.setAttribute("aria-describedby", `${field.input.getAttribute("aria-describedby")} ${reached.id}`);
   field.element.append(reached);
   field.element.classList.add("slider");
+  // A long unit is cut in a narrow card.
+  if (options.unit) field.element.title = `${options.label} (${options.unit})`;
 
   const share = (at: number): number =>
     options.log ? Math.log(at / lo) / Math.log(hi / lo) : (at - lo) / (hi - lo || 1);

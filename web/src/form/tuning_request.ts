@@ -89,8 +89,10 @@ export function tuneEntryOf(request: TuningRequest, result: Result, index: numbe
   return rowsAsked(request, result)[rowsOf(request, result)[index] ?? -1] ?? { method: entry.method };
 }
 
-/** The same request with other options in the row of one of its entries. */
+/** The same request with other options in the row of one of its entries. Of a comparison of all methods that row alone
+    remains: a request may not list as many rows, and the others would be computed again. */
 export function withTune(request: TuningRequest, result: Result, index: number, tune: TuneEntry): TuningRequest {
+  if (asksForAll(request.tune)) return { ...request, tune: [tune] };
   const row = rowsOf(request, result)[index];
   return { ...request, tune: rowsAsked(request, result).map((entry, at) => (at === row ? tune : entry)) };
 }

@@ -1,5 +1,5 @@
 // The modified design: the last slider move, its newest answer, and how it is requested. No element of the page.
-import { batch, computed, signal } from "@preact/signals-core";
+import { batch, computed, effect, signal } from "@preact/signals-core";
 import type { ReadonlySignal } from "@preact/signals-core";
 import { ApiError } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
@@ -36,6 +36,8 @@ export interface Live {
   readonly waits: ReadonlySignal<number>;
   /** The reason why there is no newer answer, or "". */
   readonly trouble: ReadonlySignal<string>;
+  /** The displayed design is that of the point: no newer answer is to come. */
+  readonly current: ReadonlySignal<boolean>;
   readonly canUndo: ReadonlySignal<boolean>;
   readonly canRedo: ReadonlySignal<boolean>;
   readonly steps: ReadonlySignal<Steps | null>;
@@ -56,6 +58,8 @@ export interface Live {
   reset(): void;
   /** Asks again at once. */
   retry(): void;
+  /** Waits until the point has its answer, or there is a reason why it has none. */
+  settled(): Promise<void>;
   dispose(): void;
 }
 
@@ -217,9 +221,15 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     });
   }
 
+  const current = computed(() => {
+    const shown = answer.value?.point ?? proposal.value?.point;
+    return point.value === null || (shown !== undefined && samePoint(shown, point.value));
+  });
+
   return {
     point,
     answer,
+    current,
     held,
     late,
     waits,
@@ -265,6 +275,14 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
       if (steps.peek() && proposal.peek()) go(stepTo(steps.peek()!, proposal.peek()!.point));
     },
     retry,
+    settled: () =>
+      new Promise((resolve) => {
+        const stop = effect(() => {
+          if (!current.value && trouble.value === "") return;
+          resolve();
+          queueMicrotask(() => stop());
+        });
+      }),
     dispose: forget,
   };
 }

@@ -3,7 +3,7 @@ import { settingsOf } from "../api/evaluate.ts";
 import { designBody, withHeldPoints } from "../api/live.ts";
 import type { DesignAnswer } from "../api/live.ts";
 import type { Entry, GivenController, Result, TuneEntry, TuningRequest } from "../api/types.ts";
-import { isGiven, rowsOf, withGiven, withImplement, withTune } from "../form/tuning_request.ts";
+import { asksForAll, isGiven, rowsOf, tuneEntryOf, withGiven, withImplement, withTune } from "../form/tuning_request.ts";
 import type { Point } from "./point.ts";
 
 /** A job's entry that is modified. */
@@ -93,9 +93,12 @@ export function designShown(from: Modifiable, tune: TuneEntry, answer: DesignAns
   const request = alteredBy(from, tune);
   const row = rowsOf(from.request, from.result)[from.index]!;
   const single = rowCount(request) === 1 && !request.controllers?.length;
-  if (single || held) {
+  const ofAll = asksForAll(from.request.tune);
+  if (single || held || ofAll) {
     const among = amongOthers(from, answer);
-    return { request, kept: among.index, ...among, cost: costOf(answer.controllers), whole: single };
+    const modified = from.result.controllers[from.index]!;
+    const kept = ofAll ? sameKind(modified, answer.controllers.filter((entry) => !isGiven(entry))) : among.index;
+    return { request, kept, ...among, cost: costOf(answer.controllers), whole: single || ofAll };
   }
   const { request_hash: _hash, ...kept } = from.result;
   const result: Result = { ...kept, ...answer };
@@ -132,11 +135,22 @@ export function manualQuestion(from: Modifiable, point: Point): Record<string, u
   return { ...designBody({ ...request, evaluate }, result), tune: [], controllers: [givenOf(point)] };
 }
 
+/** The request of a job for settings by hand, and their index in its result. Of a comparison of all methods only the row
+    remains from which they deviate. */
+function manualRequest(from: Modifiable, point: Point): { request: TuningRequest; index: number } {
+  const { result, index } = from;
+  const request = requestFor(from, point);
+  const tune = asksForAll(request.tune) ? tuneEntryOf(request, result, index) : null;
+  if (!tune) return withGiven(request, result, index, givenOf(point));
+  const kept = [...rowMates(from).map((at) => result.controllers[at]!), ...result.controllers.filter(({ method }) => method === "given")];
+  return withGiven({ ...request, tune: [tune] }, { ...result, controllers: kept }, 0, givenOf(point));
+}
+
 /** Settings by hand in their displayed form: the job's other entries stay, without a verdict over all of them. */
 export function manualShown(from: Modifiable, point: Point, answer: DesignAnswer): Shown {
   const [entry] = answer.controllers;
   const today = todaysOf(answer.controllers);
-  const whole = withGiven(requestFor(from, point), from.result, from.index, givenOf(point));
+  const whole = manualRequest(from, point);
   const kept = withoutComparison(from.result);
   const controllers = kept.controllers.map((other, at) =>
     at === from.index

@@ -38,7 +38,8 @@ export const X_TICK_PX = 90;
 const RIGHT = 14;
 const TOP = 8;
 const BOTTOM = 38;
-const GAP = 14;
+/** Between two panes. */
+export const GAP = 14;
 
 /** `atLeast`: a layout whose ranges are included in this one's, unless the user has zoomed. */
 export function layoutFrame(

@@ -5,8 +5,8 @@ import type { TreeNode } from "../dom.ts";
 import { ticks, tickTexts } from "./axis.ts";
 import { columnExtremes, drawableRuns } from "./dense.ts";
 import type { Frame, Look, Mark, Point, Trace } from "./frame.ts";
-import { markLabels } from "./labels.ts";
-import { TICK_PX, X_TICK_PX } from "./layout.ts";
+import { GLYPH_PX, markLabels } from "./labels.ts";
+import { GAP, TICK_PX, X_TICK_PX } from "./layout.ts";
 import type { Layout, PaneBox } from "./layout.ts";
 
 type Attributes = Record<string, string | number>;
@@ -79,12 +79,26 @@ function drawGrid(box: PaneBox): TreeNode[] {
     : [grid];
 }
 
+/** The height of a tick's digits. */
+const DIGIT_PX = 11;
+
+const isDecade = (value: number): boolean => Number.isInteger(Number(Math.log10(value).toFixed(9)));
+
+/** The ticks of a y axis whose texts do not overlap: of a logarithmic one first the powers of ten. */
+export function legibleTicks({ y: scale }: Pick<PaneBox, "y">, values: readonly number[]): number[] {
+  const first = scale.kind === "log" ? values.filter(isDecade) : [];
+  const taken: number[] = [];
+  for (const value of [...first, ...values.filter((other) => !first.includes(other))])
+    if (taken.every((other) => Math.abs(scale.toPixel(other) - scale.toPixel(value)) >= DIGIT_PX)) taken.push(value);
+  return values.filter((value) => taken.includes(value));
+}
+
 function drawTickTexts(box: PaneBox, last: boolean): TreeNode[] {
   const { x, y } = axisTicks(box);
   const bottom = box.top + box.height;
   const yTexts = tickTexts(y);
-  const texts: TreeNode[] = y.map((value, index) =>
-    node("text", { x: box.left - 6, y: round(box.y.toPixel(value) + 4), "text-anchor": "end" }, yTexts[index]!),
+  const texts: TreeNode[] = legibleTicks(box, y).map((value) =>
+    node("text", { x: box.left - 6, y: round(box.y.toPixel(value) + 4), "text-anchor": "end" }, yTexts[y.indexOf(value)]!),
   );
   if (!last) return texts;
   let free = -Infinity;
@@ -99,13 +113,19 @@ function drawTickTexts(box: PaneBox, last: boolean): TreeNode[] {
   return texts;
 }
 
+/** The name of a y axis, without its unit if both are longer than the pane and would run into the next. */
+export function axisName({ pane, height }: Pick<PaneBox, "pane" | "height">): string {
+  const { label } = pane.y;
+  return label.length * GLYPH_PX > height + GAP ? label.replace(/ \(.*\)$/, "") : label;
+}
+
 function drawAxisNames(frame: Frame, box: PaneBox, last: boolean): TreeNode[] {
   const middle = round(box.top + box.height / 2);
   const names = [
     node(
       "text",
       { x: 0, y: 0, transform: `translate(13 ${middle}) rotate(-90)`, "text-anchor": "middle" },
-      box.pane.y.label,
+      axisName(box),
     ),
   ];
   if (last)

@@ -33,6 +33,12 @@ async function open(button: HTMLElement, name: ExplainedName): Promise<void> {
   box.focus();
 }
 
+/** Under the pointer the browser shows the text itself. */
+async function nameText(button: HTMLElement, name: ExplainedName): Promise<void> {
+  const texts = await import("../words/explained.ts").catch(() => null);
+  if (texts) button.title = texts.EXPLANATIONS[name].text;
+}
+
 /** Below the button, or above it; inside the window. */
 function place(box: HTMLElement, button: DOMRect): void {
   const { width, height } = box.getBoundingClientRect();
@@ -47,6 +53,8 @@ function place(box: HTMLElement, button: DOMRect): void {
 /** `label`: what the button shows; `spoken`: its name if that is not enough. */
 export function explained(name: ExplainedName, label: Child, spoken = ""): HTMLButtonElement {
   const button = h("button", { type: "button", class: "explain", "aria-haspopup": "dialog", "aria-label": spoken || null }, label);
+  // The texts are loaded with the first hover.
+  button.addEventListener("pointerenter", () => void nameText(button, name), { once: true });
   button.addEventListener("click", () => void open(button, name).catch(() => undefined));
   return button;
 }

@@ -11,6 +11,8 @@ export interface ComparisonControls {
   setLimit(Ms: number | null): void;
   onlySettled(): boolean;
   setColumns(columns: ComparisonColumn[]): void;
+  /** How the rows are ranked. */
+  setCriterion(words: string): void;
   /** True if a column is shown. */
   shows(id: string): boolean;
 }
@@ -34,6 +36,7 @@ export function comparisonControls(events: ComparisonControlEvents): ComparisonC
     autocomplete: "off",
     "aria-describedby": "rank-error",
   });
+  const label = h("label", { for: input.id });
   const error = h("span", { class: "error", id: "rank-error", role: "status" });
   const stable = h("input", { type: "checkbox", id: uniqueId("only-settled") });
   const list = h("div", { class: "menu-items columns" });
@@ -57,7 +60,7 @@ export function comparisonControls(events: ComparisonControlEvents): ComparisonC
     element: h(
       "div",
       { class: "comparison-controls" },
-      h("label", { for: input.id }, "ranked by excess over the optimum*, with Ms ≤"),
+      label,
       input,
       error,
       h("span", { class: "check" }, stable, h("label", { for: stable.id }, "only those that settle")),
@@ -85,6 +88,9 @@ export function comparisonControls(events: ComparisonControlEvents): ComparisonC
           return h("span", { class: "check" }, box, h("label", { for: box.id, title: column.meaning }, column.label));
         }),
       );
+    },
+    setCriterion(words) {
+      label.textContent = `ranked by ${words}, with Ms ≤`;
     },
     shows,
   };

@@ -10,7 +10,7 @@ import { swatch } from "../plot/marks.ts";
 import { spark } from "../plot/spark.ts";
 import type { SparkScale } from "../plot/spark.ts";
 import { explained } from "../reach/explanation.ts";
-import { comparisonRows, notesSummary, reasonOf, settles, sortRows } from "../words/comparison.ts";
+import { comparisonRows, isCompared, notesSummary, reasonOf, settles, sortRows } from "../words/comparison.ts";
 import type { ComparisonColumn, ComparisonOrder, ComparisonRow } from "../words/comparison.ts";
 import type { ExplainedName } from "../words/explained.ts";
 import { DASH } from "../words/numbers.ts";
@@ -123,7 +123,7 @@ export function comparisonTable(events: ComparisonEvents): ComparisonTable {
     const list = comparisonRows(result, null);
     scales = sparkScales(list, step);
     head.replaceChildren(
-      heading("rank", "#", "by the excess over the optimum at the same Ms, of those that settle within Ms", "pin first"),
+      heading("rank", "#", `by the ${isCompared(result) ? "excess over the optimum at the same Ms" : "load IAE"}, of those that settle within Ms`, "pin first"),
       heading("method", "Method", "by name", "pin method-cell"),
       h("th", { scope: "col", class: "spark-head" }, "y, load step"),
       h("th", { scope: "col", class: "spark-head" }, "y, set-point step"),

@@ -3,14 +3,14 @@ import { cancelJob } from "../api/jobs.ts";
 import { isRangeRequest } from "../api/range.ts";
 import { isFinal, nameOf } from "../api/types.ts";
 import type { Entry, Job, Result, TuningRequest } from "../api/types.ts";
-import { defaultDrawn, drawnEntries, entryNames, proposedEntry } from "../charts/drawn.ts";
+import { defaultDrawn, defaultOverlay, drawable, drawnEntries, entryNames, proposedEntry } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { recordFrame } from "../charts/record.ts";
 import { LINEAR_NOTE, hasLinear } from "../charts/responses.ts";
 import { h, keepFocus } from "../dom.ts";
 import { readStep } from "../form/own_step.ts";
 import type { StepTexts } from "../form/own_step.ts";
-import { withLambda, withOwnStep } from "../form/tuning_request.ts";
+import { asksForAll, withLambda, withOwnStep } from "../form/tuning_request.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
 import { rangeJobCard } from "../range/job_result.ts";
@@ -55,6 +55,17 @@ function listedEntries(count: number, drawn: Drawn[], selected: number): number[
   return every.filter((index) => index === selected || drawn.some((item) => item.index === index));
 }
 
+/** A large comparison begins here with the rows that are ticked in its table. */
+const drawnFirst = (result: Result): number[] =>
+  result.controllers.length > MAX_LISTED ? defaultOverlay(result) : defaultDrawn(result);
+
+/** The proposal from which a design was moved, in a look of its own; null if it is not drawn, or none is free. */
+function proposalOf(entry: Entry, drawn: readonly Drawn[], index: number): Drawn | null {
+  const look = ([3, 4, 2, 1] as const).find((free) => drawn.every((item) => item.look !== free));
+  if (!look || !drawable(entry) || drawn.every((item) => item.index !== index)) return null;
+  return { index: -1, name: "proposal", look, entry };
+}
+
 export interface DesignEvents extends JobEvents {
   /** Tunes another request and shows that job. */
   onTune(request: TuningRequest): Promise<void>;
@@ -95,6 +106,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       judged = entry;
       if (finished) showMoving(finished.job, finished.result, store.get(), false);
     },
+    onReading: (reading) => modified.waitFor(reading),
   });
   const reports = reportCards(announce, { onRetune: retune, onTry: own.follow });
   const reportsAt = (place: "above" | "below") => reports.filter((card) => card.place === place).map((card) => card.element);
@@ -116,15 +128,17 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   let screenOf = "";
   /** Shows the verdict, with what it says of the step that was typed. */
   let sayVerdict = (): void => undefined;
+  const said = h("div", { class: "verdict-column" }, trouble, verdict, cures.element, progress.element, range.element, legend.element);
+  const head = h("div", { class: "design-head" }, own.answer, said);
   const modified = modifiedDesign(store, announce, {
     onAnswer: showModified,
     onLate: (late) => {
       plots.setBusy(late);
-      verdict.classList.toggle("late", late);
+      for (const part of [verdict, figures, own.answer]) part.classList.toggle("late", late);
     },
-    onHold: plots.hold,
+    onHold: holdStill,
     onKeep: async (request, index) => {
-      const job = await replace(withStep(request), index);
+      const job = await replace(withStep(request), index, "Keeping this design");
       return job && { job, index };
     },
   });
@@ -138,8 +152,6 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   );
   const followsLater = h("p", { class: "hint", hidden: true }, "The figures below follow when you release the slider.");
   const below = h("div", { class: "below" }, followsLater, ownStep.element, replay.element, model, ...reportsAt("above"), notes, more);
-  const said = h("div", { class: "verdict-column" }, trouble, verdict, cures.element, progress.element, range.element, legend.element);
-  const head = h("div", { class: "design-head" }, own.answer, said);
   const left = h("div", { class: "left-column" }, modified.controls, modified.front);
   const element = h("main", { class: "design", id: "main" }, title.element, head, left);
   const bodyParts = [main, aside, below];
@@ -151,6 +163,19 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     else if (!main.isConnected) element.append(...bodyParts);
   }
 
+  /** While a slider or a curve is held nothing above the plots changes its height, so that they stay under the
+      pointer. */
+  function holdStill(held: boolean): void {
+    plots.hold(held);
+    const above = [title.element, head];
+    const heights = held ? above.map((part) => part.getBoundingClientRect().height) : [];
+    above.forEach((part, index) => {
+      if (held && part.style.height !== "") return;
+      part.style.height = held ? `${heights[index]}px` : "";
+      part.classList.toggle("still", held);
+    });
+  }
+
   /** The entry whose settings are shown. */
   function selectedEntry(result: Result, workspace: Workspace): number {
     return Math.min(workspace.selected ?? proposedEntry(result), result.controllers.length - 1);
@@ -159,15 +184,16 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   async function retune(lambda: number): Promise<void> {
     if (!finished || !screen) return;
     const request = screen.request ?? {};
-    await replace(withLambda(request, screen.result, screen.index, lambda, store.get().methods), screen.index);
+    const index = asksForAll(request.tune) ? 0 : screen.index;
+    await replace(withLambda(request, screen.result, screen.index, lambda, store.get().methods), index);
   }
 
   /** Designs again in this job's place; a search that takes long shows its progress, and can be stopped. */
-  async function replace(request: TuningRequest, index: number): Promise<Job | null> {
+  async function replace(request: TuningRequest, index: number, what = ""): Promise<Job | null> {
     const showWaiting = (job: Job | null): void => {
       waiting = job;
       progress.element.hidden = !job;
-      if (job) progress.show(job);
+      if (job) progress.show(job, what);
     };
     try {
       return await events.onRetune(request, index, showWaiting);
@@ -203,12 +229,22 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     if (screen) await replace(request, screen.index);
   }
 
-  function showFigures(result: Result, listed: number[], drawn: Drawn[], names: string[], units: UnitNames, held: boolean): void {
+  function showFigures(
+    result: Result,
+    listed: number[],
+    drawn: Drawn[],
+    before: Drawn | null,
+    names: string[],
+    units: UnitNames,
+    held: boolean,
+  ): void {
     const columns = listed.map((index) => {
       const shown = drawn.find((item) => item.index === index);
       const entry = running(result.controllers[index]!);
       return { name: names[index]!, entry, swatch: () => (shown ? swatch(shown.look) : null) };
     });
+    const room = listed.length + 1 < BROAD_FROM || element.classList.contains("broad");
+    if (before && room) columns.push({ name: before.name, entry: before.entry, swatch: () => swatch(before.look) });
     const groups = figureGroups(
       units,
       columns.some(({ entry }) => entry.region),
@@ -236,33 +272,52 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     return { ...result, controllers: result.controllers.map((other, at) => (at === index ? typed : other)) };
   }
 
+  /** Moving an entry does not change the arrangement. */
+  const isBroad = (whole: Result, workspace: Workspace): boolean => {
+    const drawn = drawnEntries(whole, workspace.drawn ?? drawnFirst(whole));
+    return listedEntries(whole.controllers.length, drawn, selectedEntry(whole, workspace)).length >= BROAD_FROM;
+  };
+
   /** Updates the parts that follow a slider: verdict, settings, figures and plots. */
-  function showMoving(job: Job, whole: Result, workspace: Workspace, held: boolean): Drawn[] {
+  function showMoving(job: Job, whole: Result, workspace: Workspace, held: boolean): { drawn: Drawn[]; before: Drawn | null } {
     const modifiedNow = modified.onScreen(job, whole, selectedEntry(whole, workspace));
     screen = { ...modifiedNow, request: modifiedNow.request && withStep(modifiedNow.request) };
     const { index, origin } = screen;
     title.setShown(screen, screen.result === whole && !workspace.step);
     const result = asTyped(screen.result, index);
     const entries = result.controllers;
-    const names = entryNames(entries);
+    const names = namesNow(whole, origin);
     const units = unitNames(job.request?.units);
-    const drawn = drawnEntries(result, workspace.drawn ? drawnOf(workspace.drawn, origin) : defaultDrawn(result));
+    const drawn = drawnNow(whole, workspace);
     const listed = listedEntries(entries.length, drawn, index);
+    const before = screen.result === whole ? null : proposalOf(whole.controllers[selectedEntry(whole, workspace)]!, drawn, index);
     const record = formatRoute({ screen: "identify", job: job.id });
     sayVerdict = () => keepFocus(verdict, () => showVerdict(verdict, ownStep.judged(result), names, index, listed, record, units));
     sayVerdict();
     if (held) own.move(ownShown(job, whole, index, names[index]!, units));
-    showFigures(result, listed, drawn, names, units, held);
+    showFigures(result, listed, drawn, before, names, units, held);
     linearNote.hidden = !hasLinear(drawn);
     plots.setSubject(nameOf(job));
-    showEntryPlots(plots, drawn, job.request, index, modified.grips());
+    showEntryPlots(plots, drawn, job.request, { index, grips: modified.grips(), before });
     replay.show(whole, drawn, units);
-    return drawn;
+    return { drawn, before };
   }
 
-  /** Indices in the displayed result for entries of the job; if two replace one, the first. */
-  const drawnOf = (chosen: number[], origin: number[]): number[] =>
-    chosen.flatMap((index) => (origin.includes(index) ? [origin.indexOf(index)] : []));
+  /** The entries have the names of the job's, also after they moved. */
+  function namesNow(whole: Result, origin: number[]): string[] {
+    const names = entryNames(whole.controllers);
+    return origin.map((index) => names[index]!);
+  }
+
+  /** The drawn entries of the job with the newest answer, each in its own look; if two replace one, the first. */
+  function drawnNow(whole: Result, workspace: Workspace): Drawn[] {
+    const { result, origin } = screen!;
+    return drawnEntries(whole, workspace.drawn ?? drawnFirst(whole)).flatMap((item) => {
+      const index = origin.indexOf(item.index);
+      const entry = result.controllers[index];
+      return drawable(entry) ? [{ ...item, index, entry: entry! }] : [];
+    });
+  }
 
   const ownShown = (job: Job, whole: Result, index: number, name: string, units: UnitNames) => ({
     job,
@@ -274,7 +329,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     code: screen!.result === whole ? index : null,
     mark: modified.mark(),
     typeable: modified.isMovable(),
-    outdated: modified.isOutdated(),
+    isCurrent: () => modified.isCurrent(),
   });
 
   function showResult(job: Job, whole: Result, workspace: Workspace): void {
@@ -282,16 +337,16 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     screenOf = job.id;
     modified.show(job, whole, selected);
     showBody(true);
-    const drawn = showMoving(job, whole, workspace, false);
+    element.classList.toggle("broad", isBroad(whole, workspace));
+    const { drawn, before } = showMoving(job, whole, workspace, false);
     const { result, index, origin } = screen!;
     const entries = result.controllers;
-    const names = entryNames(entries);
+    const names = namesNow(whole, origin);
     const units = unitNames(job.request?.units);
     // The record does not change while a slider moves.
     plots.show("record", result.model ? recordFrame(result.model, job.request) : null);
     ownStep.show({ request: job.request ?? {}, whole, result, drawn, index, units, subject: nameOf(job), texts: workspace.step });
     const listed = listedEntries(entries.length, drawn, index);
-    element.classList.toggle("broad", listed.length >= BROAD_FROM);
     // Rules and robustness of a nonlinear plant use its linear model.
     const linear = result.model?.plant ?? result.linear_model ?? job.request?.plant;
     const reported = { name: names[index]!, entry: entries[index]!, model: linear, request: job.request, units };
@@ -308,7 +363,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       listed.map((at) => names[at]!),
     );
     showComputed(computed, result, entries[index]!, names, units);
-    legend.show(entries, listed, names, drawn, index, origin);
+    legend.show({ entries, listed, names, drawn, selected: index, origin, before });
   }
 
   /** An answer to the sliders is drawn when it arrives, not in a later frame; parts below are updated on release. */

@@ -8,9 +8,20 @@ import type { Store } from "../store.ts";
 
 export interface Legend {
   element: HTMLElement;
-  /** `listed`: indices of the entries that have a place here. `origin`: for each of all entries, its index in the
-      job's result. */
-  show(entries: Entry[], listed: number[], names: string[], drawn: Drawn[], selected: number, origin?: number[]): void;
+  show(shown: LegendContent): void;
+}
+
+export interface LegendContent {
+  entries: Entry[];
+  /** Indices of the entries that have a place here. */
+  listed: number[];
+  names: string[];
+  drawn: Drawn[];
+  selected: number;
+  /** For each of all entries, its index in the job's result. */
+  origin?: number[];
+  /** The proposal from which the selected entry was moved. */
+  before?: Drawn | null;
 }
 
 export function createLegend(store: Store): Legend {
@@ -49,12 +60,12 @@ export function createLegend(store: Store): Legend {
 
   return {
     element,
-    show(entries, listed, names, drawn, selected, origin) {
+    show({ entries, listed, names, drawn, selected, origin, before }) {
       placeOf = (index) => origin?.[index] ?? index;
       // The controls are created again; the focus is restored.
       const focused = controls().findIndex((control) => control === document.activeElement);
       const indices = drawn.map((item) => item.index);
-      element.hidden = entries.length === 1;
+      element.hidden = entries.length === 1 && !before;
       element.replaceChildren(
         h("legend", { class: "visually-hidden" }, "Which controllers to draw, and whose settings to show"),
         ...listed.map((index) =>
@@ -70,6 +81,7 @@ export function createLegend(store: Store): Legend {
             ),
           ),
         ),
+        before ? h("span", { class: "legend-item", title: before.entry.title ?? null }, swatch(before.look), before.name) : "",
         listed.length > MAX_DRAWN ? h("span", { class: "hint" }, `At most ${MAX_DRAWN} are drawn.`) : "",
         entries.length > listed.length
           ? h("span", { class: "hint" }, `${entries.length - listed.length} more are in the comparison table.`)

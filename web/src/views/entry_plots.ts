@@ -12,22 +12,31 @@ import type { Grips } from "./grips.ts";
 import { commonLimits } from "../words/limits.ts";
 import { running } from "../words/running.ts";
 
-/** `selected`: the entry whose linearised response is drawn as well if there are many, and which `grips` drag. */
+/** The entry that can be moved. */
+export interface Selected {
+  /** Its linearised response is drawn as well if there are many. */
+  index: number;
+  /** They drag it. */
+  grips: Grips | null;
+  /** The proposal from which it was moved. */
+  before: Drawn | null;
+}
+
 export function showEntryPlots(
   plots: PlotGrid,
-  drawn: Drawn[],
+  entries: Drawn[],
   request: TuningRequest | undefined,
-  selected?: number,
-  grips: Grips | null = null,
+  { index: selected, grips, before }: Partial<Selected> = {},
 ): void {
+  const drawn = before ? [...entries, before] : entries;
   const loops = drawn.map((item) => ({ ...item, entry: running(item.entry) }));
   const responses = loops.some((item) => item.entry.responses);
   // The curves over frequency are known of the ideal loop alone.
   const ideal = drawn.some((item) => item.entry.implemented);
   const named = (frame: Frame): Frame => (ideal ? { ...frame, title: `${frame.title}, ideal` } : frame);
   const frequency = drawn.some((item) => item.entry.frequency);
-  const limits = commonLimits(drawn.map((item) => item.entry));
-  const held = drawn.find(({ index }) => index === selected);
+  const limits = commonLimits(entries.map((item) => item.entry));
+  const held = entries.find(({ index }) => index === selected);
   const response = (kind: "setpoint" | "load"): Frame => {
     const grip = held && grips?.peak(kind, request?.evaluate?.setpoint_step ?? 1);
     return responseFrame(kind, loops, request, selected, grip && { ...grip, at: peakOf(held.entry, kind), look: held.look });

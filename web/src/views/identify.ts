@@ -158,7 +158,9 @@ export function identifyView(
       model = answer;
       answered = asked;
       menu.show("v1/identify", asked);
-      if (isWhole(asked)) takeWhole(answer.fit, answer.data_quality?.move_times ?? []);
+      // In automatic the controller moves u, so that no move is a step by itself.
+      const { closed_loop, move_times = [] } = answer.data_quality ?? {};
+      if (isWhole(asked)) takeWhole(answer.fit, closed_loop ? [] : move_times);
       body.hidden = false;
       side.hidden = false;
       candidates.show(answer, units);

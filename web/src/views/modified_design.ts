@@ -47,10 +47,12 @@ export interface ModifiedDesign {
   grips(): Grips | null;
   /** The entry has sliders, hence other settings can be shown in its place. */
   isMovable(): boolean;
-  /** Other settings were chosen than those of the newest answer. */
-  isOutdated(): boolean;
   /** Shows these settings, as one step. */
   setByHand(settings: SettingsByHand): void;
+  /** A design is kept only after the settings that are being read. */
+  waitFor(reading: Promise<void>): void;
+  /** The displayed design is that of the sliders and of the settings typed last. */
+  isCurrent(): boolean;
   dispose(): void;
 }
 
@@ -82,6 +84,8 @@ export function modifiedDesign(
   let addressed = true;
   /** For the job's other entries: their changes before another one was chosen. */
   const left = new Map<number, Steps>();
+  /** Settings that were typed and are being read. */
+  let typing: Promise<void> = Promise.resolve();
   /** The point of the design that is being kept. */
   let kept: Point | null = null;
   const live = liveDesign(settled);
@@ -120,9 +124,15 @@ export function modifiedDesign(
   /** The job's report and code belong to the proposal: a design that is kept gets its own job, with the displayed
       request. */
   async function keepDesign(): Promise<void> {
-    const shownNow = live.answer.peek();
-    if (!shownNow) return;
     keep.disabled = true;
+    // The press that leaves a field comes before the answer to what was typed there.
+    await typing;
+    await live.settled();
+    const shownNow = live.answer.peek();
+    if (!shownNow || !live.current.peek()) {
+      keep.disabled = false;
+      return;
+    }
     kept = shownNow.point;
     const before = shownNow.entry;
     try {
@@ -316,13 +326,13 @@ export function modifiedDesign(
     answer: () => live.answer.peek(),
     grips: () => (live.point.peek() !== null && !controls.element.hidden ? grips : null),
     isMovable: () => live.point.peek() !== null && !controls.element.hidden,
-    isOutdated() {
-      const [asked, answered] = [live.point.peek(), live.answer.peek()?.point ?? proposal];
-      return asked !== null && answered !== null && !samePoint(asked, answered);
-    },
     setByHand({ controller, typed }) {
       live.settle({ tune: (live.point.peek() ?? proposal!).tune, manual: controller, ...(typed ? { typed } : {}) });
     },
+    waitFor(reading) {
+      typing = reading;
+    },
+    isCurrent: () => live.current.peek(),
     mark() {
       const answer = live.answer.peek();
       return !answer ? "" : answer.point.manual ? "set by hand" : "moved by the sliders";

@@ -4,7 +4,7 @@ import { ApiError, sentenceOf, waitAfter } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
 import { callSubject } from "../api/live.ts";
 import { getProduct, knownProduct } from "../api/products.ts";
-import type { AsEntered, Controller, Entry, Job, Product, Result, SettingValue, TuningRequest } from "../api/types.ts";
+import type { AsEntered, Controller, Entry, Implement, Job, Product, Result, SettingValue, TuningRequest } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { choicesOf } from "../form/product_settings.ts";
@@ -45,8 +45,8 @@ interface Shown {
   mark: string;
   /** Other settings can be typed in their place. */
   typeable: boolean;
-  /** A newer answer is on its way. */
-  outdated: boolean;
+  /** The result is that of everything that was moved and typed. */
+  isCurrent(): boolean;
 }
 
 export interface OwnController {
@@ -71,9 +71,11 @@ export interface OwnControllerEvents {
   /** The entry's controller was evaluated on a product for which the job was not designed; null: the job's own loop is
       that of the settings. */
   onJudged(entry: Entry | null): void;
+  /** Settings are being read, after which `onByHand` is called unless they are refused. */
+  onReading(reading: Promise<void>): void;
 }
 
-export function ownController(store: Store, { announce, retune, onByHand, onJudged }: OwnControllerEvents): OwnController {
+export function ownController(store: Store, { announce, retune, onByHand, onJudged, onReading }: OwnControllerEvents): OwnController {
   let shown: Shown | null = null;
   let mine: MyController | null = store.get().mine;
   let form: TextbookForm = rememberedForm();
@@ -92,7 +94,14 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
     h("div", { class: "actions" }, redesign),
     trouble,
   );
-  const answer = answerCard({ announce, onType: typeInto }, {
+  const answer = answerCard({
+    announce,
+    onType(texts) {
+      const reading = typeInto(texts);
+      onReading(reading);
+      return reading;
+    },
+  }, {
     picker: picker.element,
     notes: picker.notes,
     folded: [picker.facts, today.element],
@@ -101,9 +110,10 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
 
   const calls = latest<TypedQuestion, TypedAnswer>(askTyped, {
     onBusy: answer.setBusy,
-    onAnswer({ product, entered, judged }, { controller }) {
+    onAnswer({ product, entered, judged }, { implement, controller }) {
       if (!shown) return;
-      showTyped(product, entered, judged ?? (tried ? null : shown.result.controllers[shown.index]!));
+      const newest = keyOf(implement, controller) === asked;
+      showTyped(product, entered, judged ?? (tried ? null : shown.result.controllers[shown.index]!), newest);
       if (!tried) onJudged(judged && { ...judged, controller });
       if (!tried) announce(`Settings of ${shown.name} for ${mine?.name ?? product.name} are shown.`);
     },
@@ -143,6 +153,9 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
     showMine();
   }
 
+  const keyOf = (implement: Implement, controller: Controller): string =>
+    JSON.stringify([shown?.job.id, shown?.index, implement, controller]);
+
   const whose = (): string => [tried ? "the manual controller" : shown!.name, shown!.mark].filter(Boolean).join(", ");
 
   /** The job's entry of today's settings. */
@@ -156,7 +169,7 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
     return { ...written, ...(baseline?.product === product.id ? baseline.settings : {}) };
   }
 
-  function showTyped(product: Product, entered: AsEntered, judged: Entry | null): void {
+  function showTyped(product: Product, entered: AsEntered, judged: Entry | null, newest = true): void {
     const heading = productTitle(product);
     const settled = tried ? null : judged;
     answer.show({
@@ -164,9 +177,9 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
       whose: whose(),
       rows: productRows(product, entered, todaysTyped(product)),
       text: typedText(`${heading}: ${whose()}`, typedRows(product, entered)),
-      below: [...productTroubles(settled), ...snippetBlocks(entered, announce)],
+      below: [...productTroubles(settled, shown!.units.time), ...snippetBlocks(entered, announce)],
       details: productDetails(product, entered, settled, shown!.units.time),
-      outdated: shown!.outdated,
+      current: newest && isCurrent(),
       choices: typeable() ? (name) => choicesOf(product, name) : null,
     });
   }
@@ -174,6 +187,10 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
   const typeable = (): boolean => !tried && shown!.typeable;
 
   let typings = 0;
+  /** Typings that are being read. */
+  let reading = 0;
+
+  const isCurrent = (): boolean => reading === 0 && shown!.isCurrent();
 
   /** Typed texts as a controller: in the product, or in the form. Only the last ones count, and only while the same
       entry is shown. */
@@ -184,6 +201,7 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
     const current = (): boolean => typing === typings && shown?.job.id === job.id && shown.index === index;
     const implement = implementOf(mine);
     const subject = callSubject(request, result);
+    reading += 1;
     try {
       const product = implement && (await getProduct(implement.product));
       const entry = result.controllers[index]!;
@@ -195,6 +213,8 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
       if (!current()) return;
       const listed = error instanceof ApiError ? (error.problem.errors ?? []) : [];
       answer.refuse(listed[0]?.detail ?? sentenceOf(error));
+    } finally {
+      reading -= 1;
     }
   }
 
@@ -217,7 +237,7 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
       text,
       below: [h("p", { class: "hint" }, formulaLine(inForm, entry))],
       details: [],
-      outdated: shown!.outdated,
+      current: isCurrent(),
       choices: typeable() ? () => [] : null,
     });
   }
@@ -298,7 +318,7 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
       return;
     }
     const request = shown.request;
-    const key = JSON.stringify([shown.job.id, shown.index, implement, controller]);
+    const key = keyOf(implement, controller);
     if (key === asked) return;
     asked = key;
     const known = !tried && sameImplement(request.implement, implement) ? entry.as_entered : undefined;

@@ -53,6 +53,10 @@ function figureOf(part: Part, name: string, absent: string, format = (value: num
   return { value: null, text: "", why: part?.why_null?.[name] ?? absent };
 }
 
+/** True if the service compared a design with the optimum: else the load IAE ranks them. */
+export const isCompared = ({ controllers }: Result): boolean =>
+  controllers.some(({ optimum_at_Ms }) => typeof optimum_at_Ms?.excess_percent === "number");
+
 /** "+12.3"; the optimum itself, within the accuracy of its search, is "0". */
 export function excessText(percent: number): string {
   const text = formatPercent(percent);

@@ -46,7 +46,12 @@ const isNegligible = (error: number, value: number): boolean => !(error > NEGLIG
 
 /** A standard error by itself: "exact" if no digit of the value shows it. */
 export const formatError = (error: number | null | undefined, value: number): string =>
+  isUndetermined(error, value) ? "not determined" :
   typeof error === "number" && isNegligible(error, value) ? "exact" : formatNumber(error, 2);
+
+/** An error beyond the value: the record does not say what the value is. */
+export const isUndetermined = (error: number | null | undefined, value: number): boolean =>
+  typeof error === "number" && value !== 0 && error > Math.abs(value);
 
 /** "2.00003 ± 0.00048": the error with two digits, the value with as many decimals. */
 export function formatUncertain(value: number, error: number | null | undefined): string {

@@ -49,6 +49,28 @@ test("the Nyquist curve dragged toward −1 raises Ms as a step of its slider; u
   });
 });
 
+test("nothing moves under the pointer while a curve is dragged", async () => {
+  await withPage("", {}, async (page) => {
+    // A long name, whose remark on the settings needs another line.
+    const plant = { type: "transfer_function", num: [1], den: [1, 4, 6, 4, 1] };
+    const { id } = await tests.post("v1/jobs", { plant, tune: [{ method: "all" }] });
+    await page.goto(`${tests.service.base}/#/jobs/${id}/design`);
+    await slider(page, "Robustness Ms").waitFor();
+    const handle = await handleOf(page, "Nyquist curve of L");
+    const top = async () => (await plot(page, "Nyquist curve of L").locator("svg.canvas").boundingBox()).y;
+    const before = await top();
+    await page.mouse.move(handle.x, handle.y);
+    await page.mouse.down();
+    for (let step = 1; step <= 4; step += 1) {
+      await page.mouse.move(handle.x - 2 * step, handle.y + step);
+      await page.getByText("moved by the sliders").waitFor();
+      assert.equal(await top(), before, `after ${step} moves`);
+    }
+    await page.mouse.up();
+    await page.waitForURL(/[?&]Ms=/);
+  });
+});
+
 for (const [title, dy, moved] of [
   ["Set-point step", -9, /overshoot=/],
   ["Load step at the plant input", -9, /[?&]Ms=/],

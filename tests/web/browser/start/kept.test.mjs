@@ -185,3 +185,21 @@ test("an example that was changed is found changed after Back and a reload, a li
     assert.equal(await FIELDS.line(page).inputValue(), "K=2 T=10 L=3 parsecs");
   });
 });
+
+test("a file that is dropped while a range is being typed takes nothing of it", async () => {
+  await withPage("", {}, async (page) => {
+    await page.waitForLoadState("networkidle");
+    await chooseProduct(page, person(page), "deltav standard", DELTAV);
+    const range = page.getByRole("group", { name: /^Measurement range/ });
+    await range.getByRole("textbox", { name: "from" }).fill("0");
+    await range.getByRole("textbox", { name: "to" }).focus();
+    await page.keyboard.type("2,5");
+    await dropFile(page, ".drop", "loop.csv", loopUnderPI());
+    await page.getByRole("button", { name: "Use and tune" }).waitFor({ timeout: 120_000 });
+    assert.equal(await range.getByRole("textbox", { name: "from" }).inputValue(), "0");
+    assert.match(await range.getByRole("textbox", { name: "to" }).inputValue(), /^2[,.]5$/);
+    await page.getByRole("button", { name: "Use and tune" }).click();
+    await page.locator("table.typed tbody tr").first().waitFor({ timeout: 120_000 });
+    assert.deepEqual((await jobOf(page)).request.implement.y_span, [0, 2.5]);
+  });
+});

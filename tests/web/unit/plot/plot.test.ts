@@ -1,12 +1,13 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { nearestIndex } from "../../../../web/src/plot/cursor.ts";
+import { makeScale } from "../../../../web/src/plot/axis.ts";
 import { columnExtremes, drawableRuns } from "../../../../web/src/plot/dense.ts";
 import { fileNameOf, frameToCsv, frameToSvg } from "../../../../web/src/plot/export.ts";
 import type { Frame, Mark } from "../../../../web/src/plot/frame.ts";
 import { markLabels } from "../../../../web/src/plot/labels.ts";
 import { layoutFrame, wholeView } from "../../../../web/src/plot/layout.ts";
-import { drawLayout, pointNear, tracePath } from "../../../../web/src/plot/marks.ts";
+import { axisName, drawLayout, legibleTicks, pointNear, tracePath } from "../../../../web/src/plot/marks.ts";
 import { readings } from "../../../../web/src/plot/readout.ts";
 import { zoomAbout, zoomToRectangle } from "../../../../web/src/plot/zoom.ts";
 
@@ -273,4 +274,17 @@ test("an export says whose plot it is, in its title and in a file name that ever
   assert.equal(fileNameOf(owned), "TIC-101-heater-Öl-plane");
   assert.equal(fileNameOf({ ...plane, subject: "../*" }), "plane", "nothing is left of the name");
   assert.equal(fileNameOf(plane), "plane");
+});
+
+test("the texts of a narrow axis do not overlap, and its name does not run into the next pane", () => {
+  const range = [0.045, 4.5] as const;
+  const at = (height: number) => ({ y: makeScale("log", range, [height, 0]) });
+  const values = [0.1, 0.3, 1, 3];
+  assert.deepEqual(legibleTicks(at(400), values), values);
+  // Half a decade is 9 pixels high: the powers of ten remain.
+  assert.deepEqual(legibleTicks(at(36), values), [0.1, 1]);
+  const name = (label: string, height: number) => axisName({ height, pane: { y: { kind: "log", label }, traces: [] } });
+  assert.equal(name("|CS| (%/degC)", 36), "|CS|");
+  assert.equal(name("|CS| (%/degC)", 200), "|CS| (%/degC)");
+  assert.equal(name("y (°C)", 36), "y (°C)");
 });

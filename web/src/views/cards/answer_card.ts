@@ -17,8 +17,8 @@ export interface Answer {
   below: HTMLElement[];
   /** The part that is folded away. */
   details: HTMLElement[];
-  /** A newer answer is on its way. */
-  outdated: boolean;
+  /** They are those of everything that was typed and moved; else newer ones are on their way, and what was typed stays. */
+  current: boolean;
   /** Other values can be typed in the place of these. `choices`: by a row's name; empty: a number. */
   choices: ((name: string) => string[]) | null;
 }
@@ -53,10 +53,10 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
   let lines: RowElements[] = [];
   /** The names of the rows on the screen, and whether they have today's values: others need new elements. */
   let made = "";
+  /** The texts of the last typing that no answer has shown yet; null: there are none. */
+  let sent: string[] | null = null;
   /** The values are fields in which others can be typed. */
   let typing = false;
-  /** Typed values that are being converted. */
-  let converting = 0;
   const spoken = h("span", { class: "visually-hidden" });
   const visible = h("span", {});
   const title = h("h2", { id: uniqueId("answer") }, visible, spoken);
@@ -90,6 +90,8 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
 
   function make(rows: readonly AnswerRow[], withToday: boolean): void {
     const heads = ["", ...(withToday ? ["today"] : []), "new", "unit", ""];
+    const before = new Map(lines.map((line) => [line.name, line]));
+    const focused = lines.find(({ element: line }) => line.contains(document.activeElement))?.name;
     const head = heads.map((text) => h(text ? "th" : "td", text ? { scope: "col", class: text } : {}, text));
     lines = rows.map((row, index) =>
       rowElements(row, {
@@ -105,23 +107,26 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
       withToday ? h("thead", {}, h("tr", {}, head)) : "",
       h("tbody", {}, lines.map(({ element: line }) => line)),
     );
+    for (const line of lines) line.resume(before.get(line.name), line.name === focused);
   }
 
   function toggle(): void {
     typing = !typing;
     change.setAttribute("aria-pressed", String(typing));
     refuse("");
-    if (shown) showRows(shown.rows);
+    sent = null;
+    if (shown) showRows({ ...shown, current: true });
     if (typing) list.querySelector<HTMLElement>("input, select")?.focus();
   }
 
   function typed(): void {
     if (!shown) return;
-    const texts = shown.rows.map(({ name, value }, index) => [name, lines[index]!.text() ?? value] as const);
-    for (const line of lines) line.handIn();
-    if (texts.every(([, text], index) => text === shown!.rows[index]!.value)) return refuse("");
-    converting += 1;
-    void onType(Object.fromEntries(texts)).finally(() => (converting -= 1));
+    const { rows } = shown;
+    const texts = rows.map(({ value }, index) => lines[index]!.text() ?? value);
+    const known = sent ?? rows.map(({ value }) => value);
+    if (texts.every((text, index) => text === known[index])) return refuse("");
+    sent = texts;
+    void onType(Object.fromEntries(rows.map(({ name }, index) => [name, texts[index]!])));
   }
 
   function refuse(sentence: string): void {
@@ -129,12 +134,13 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
     refused.hidden = sentence === "";
   }
 
-  function showRows(rows: readonly AnswerRow[]): void {
+  function showRows({ rows, current }: Answer): void {
     const withToday = rows.some(({ today }) => today !== "");
     const wanted = JSON.stringify([withToday, typing, rows.map(({ label, about, explains }) => [label, about, explains])]);
     if (wanted !== made) make(rows, withToday);
     made = wanted;
-    rows.forEach((row, index) => lines[index]!.write(row, converting > 0 || (shown?.outdated ?? false)));
+    if (current) sent = null;
+    rows.forEach((row, index) => lines[index]!.write(row, current));
   }
 
   function setTitle([first, second]: Answer["heading"]): void {
@@ -153,7 +159,7 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
       change.hidden = !answer.choices;
       change.setAttribute("aria-pressed", String(typing));
       refuse("");
-      showRows(answer.rows);
+      showRows(answer);
       below.replaceChildren(...answer.below);
       rest.replaceChildren(...answer.details);
       details.hidden = answer.details.length === 0;
@@ -180,11 +186,13 @@ export function answerCard({ announce, onType }: AnswerCardEvents, parts: Answer
 }
 
 interface RowElements {
+  name: string;
   element: HTMLElement;
-  /** `keep`: the answer is older than what was handed in; a text that was not handed in yet stays in any case. */
-  write(row: AnswerRow, keep: boolean): void;
-  /** The text of its field is on its way to the service. */
-  handIn(): void;
+  /** A text that is being typed is never rewritten; one that was typed only by the values of that typing. */
+  write(row: AnswerRow, current: boolean): void;
+  /** Goes on with what was typed in the row that stood in its place. */
+  resume(before: RowElements | undefined, focused: boolean): void;
+  typed: "no" | "left" | "being typed";
   /** The text of its field; null: it has none. */
   text(): string | null;
 }
@@ -199,16 +207,15 @@ interface RowOptions {
   onType(): void;
 }
 
-function rowElements({ label, about, explains }: AnswerRow, options: RowOptions): RowElements {
+function rowElements({ name, label, about, explains }: AnswerRow, options: RowOptions): RowElements {
   const before = h("td", { class: "today" });
   const field = fieldOf(label, options);
   const cell = h("td", { class: "value" }, field);
   const dimension = h("td", { class: "unit" });
-  /** The text was changed since it was written: by the user, and handed in or not. */
-  let [changed, handedIn] = [false, true];
-  field?.addEventListener("input", () => ([changed, handedIn] = [true, false]));
   const copy = copyButton({ label: "Copy", spoken: `Copy ${label}`, look: "quiet", text: options.current }, options.announce);
-  return {
+  const row: RowElements = {
+    name,
+    typed: "no",
     element: h(
       "tr",
       { title: about || null },
@@ -218,17 +225,28 @@ function rowElements({ label, about, explains }: AnswerRow, options: RowOptions)
       dimension,
       h("td", {}, copy),
     ),
-    write({ value, unit, today }, keep) {
+    write({ value, unit, today }, current) {
       say(before, today);
       say(dimension, unit);
       if (!field) return say(cell, value);
-      if (!handedIn || (changed && keep)) return;
-      field.value = value;
-      changed = false;
+      if (row.typed === "being typed" || (row.typed === "left" && !current)) return;
+      row.typed = "no";
+      if (field.value !== value) field.value = value;
     },
-    handIn: () => (handedIn = true),
+    resume(other, focused) {
+      const text = other?.text() ?? null;
+      if (!field) return;
+      if (other && other.typed !== "no" && text !== null) {
+        row.typed = other.typed;
+        field.value = text;
+      }
+      if (focused) field.focus();
+    },
     text: () => field?.value ?? null,
   };
+  field?.addEventListener("input", () => (row.typed = "being typed"));
+  field?.addEventListener("change", () => (row.typed = "left"));
+  return row;
 }
 
 function fieldOf(label: string, { choices, onType }: RowOptions): HTMLInputElement | HTMLSelectElement | null {

@@ -3,7 +3,7 @@ import type { Candidate, Model } from "../../api/types.ts";
 import { h, uniqueId } from "../../dom.ts";
 import { plantFormula, rounded } from "../../form/formula.ts";
 import { serviceChoice } from "../../form/tuning_request.ts";
-import { formatNumber, formatParameter, formatUncertain } from "../../words/numbers.ts";
+import { formatNumber, formatParameter, formatUncertain, isUndetermined } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 import { parameterUnit, structureTitle } from "../../words/plant.ts";
 
@@ -152,17 +152,32 @@ function formulaOf(candidate: Candidate): HTMLElement | null {
   return formula;
 }
 
-/** "K 1.25 ± 0.01 °C/%" for each parameter; for a transfer function only the errors of its coefficients. A time that
-    the record does not determine is shown as unknown. */
+/** "K 1.25 ± 0.01 °C/%" for each parameter; for a transfer function the errors of its coefficients, whose values are in
+    the formula. A parameter that the record does not determine says so in place of its error. */
 export function parameterTexts(candidate: Candidate, units: UnitNames): string[] {
   const errors = candidate.standard_errors ?? {};
-  const known = (name: string): boolean => !candidate.undetermined?.includes(name);
+  const open = (name: string, value: number | undefined): boolean =>
+    (candidate.undetermined?.includes(name) ?? false) || (value !== undefined && isUndetermined(errors[name], value));
   const texts = Object.entries(candidate.plant).flatMap(([name, value]) => {
     if (typeof value !== "number" || (candidate.plant.type === "ipdt" && name === "T" && value === 0)) return [];
     const unit = parameterUnit(candidate.plant, name, units);
-    const text = known(name) ? formatUncertain(value, errors[name]) : `${formatParameter(value)} ± unknown`;
-    return [`${name} ${text}${unit ? ` ${unit}` : ""}`];
+    const text = open(name, value) ? formatParameter(value) : formatUncertain(value, errors[name]);
+    return [`${name} ${text}${unit ? ` ${unit}` : ""}${open(name, value) ? UNDETERMINED : ""}`];
   });
+  const coefficients = coefficientsOf(candidate.plant);
   const unnamed = Object.keys(errors).filter((name) => typeof candidate.plant[name] !== "number");
-  return [...texts, ...unnamed.map((name) => `${name} ± ${formatNumber(errors[name], 2)}`)];
+  return [
+    ...texts,
+    ...unnamed.map((name) => (open(name, coefficients[name]) ? `${name}${UNDETERMINED}` : `${name} ± ${formatNumber(errors[name], 2)}`)),
+  ];
+}
+
+const UNDETERMINED = ", not determined by the record";
+
+/** The coefficients of (b s + K)/(a2 s^2 + a1 s + 1) by their names. */
+function coefficientsOf({ num, den }: Candidate["plant"]): Partial<Record<string, number>> {
+  if (!Array.isArray(num) || !Array.isArray(den)) return {};
+  const [K, b] = [...num].reverse() as number[];
+  const [, a1, a2] = [...den].reverse() as number[];
+  return { K, b, a1, a2 };
 }

@@ -1,7 +1,7 @@
 // The controls on Design: the method's options, the settings by hand, and undo and redo.
 import { effect } from "@preact/signals-core";
 import type { Entry, Method } from "../../api/types.ts";
-import { h, passFocus, uniqueId } from "../../dom.ts";
+import { h, passFocus, say, uniqueId } from "../../dom.ts";
 import { FormErrors } from "../../form/errors.ts";
 import { slider } from "../../form/slider.ts";
 import type { Slider } from "../../form/slider.ts";
@@ -60,6 +60,7 @@ export function controlsCard(live: Live): ControlsCard {
     { type: "button", class: "quiet", onclick: () => live.reset() },
     "Back to the proposal",
   );
+  const computing = h("span", { class: "computing", role: "status" });
   const tie = h("input", { type: "checkbox", checked: true });
   const tieText = h("span", {});
   const tieLabel = h("label", { class: "tie" }, tie, tieText);
@@ -70,7 +71,7 @@ export function controlsCard(live: Live): ControlsCard {
     "section",
     { class: "card controls", "aria-labelledby": title.id },
     title,
-    h("div", { class: "steps" }, undo, redo, back),
+    h("div", { class: "steps" }, undo, redo, back, computing),
     optionRows,
     manualTitle,
     manualRows,
@@ -220,6 +221,7 @@ export function controlsCard(live: Live): ControlsCard {
     }
   }
 
+  const leaveLate = effect(() => say(computing, live.late.value ? "Computing..." : ""));
   const leave = effect(() => {
     const point = live.point.value;
     const moved = point !== null && shown !== null && JSON.stringify(point) !== JSON.stringify(shown.point);
@@ -284,6 +286,9 @@ export function controlsCard(live: Live): ControlsCard {
       }
       sayReached();
     },
-    dispose: leave,
+    dispose() {
+      leave();
+      leaveLate();
+    },
   };
 }

@@ -7,15 +7,17 @@ import type { BuiltRow } from "../../words/products.ts";
 /** The ideal loop, and where it is known the implemented one. */
 export type Judged = Pick<Entry, "robustness" | "performance" | "implemented" | "warnings" | "longest_sample_time" | "verdict">;
 
-/** The remarks that must not be missed. `judged`: null for settings that are tried by hand. */
-export function productTroubles(judged: Judged | null): HTMLElement[] {
+/** The remarks that must not be missed, and the sample time that the loop allows. `judged`: null for settings that are tried by hand. */
+export function productTroubles(judged: Judged | null, time: string): HTMLElement[] {
   if (!judged) return [h("p", { class: "hint" }, "Manual settings: the figures next to the sliders are those of the loop with an ideal controller.")];
+  const sampling = samplingSentences(judged, time).join(" ");
   const differs = judged.implemented ? differenceSentence(judged.implemented) : "";
   return [
     ...builtTroubles(judged).map((warning) =>
       h("p", { class: warning.code === "unstable-as-built" ? "trouble bad" : "trouble" }, warning.detail),
     ),
     ...(differs ? [h("p", { class: "trouble" }, differs)] : []),
+    ...(sampling ? [h("p", { class: "hint" }, sampling)] : []),
   ];
 }
 
@@ -23,7 +25,7 @@ export function productTroubles(judged: Judged | null): HTMLElement[] {
 export function productDetails(product: Product, entered: AsEntered, judged: Judged | null, time: string): HTMLElement[] {
   const { deviations, remarks } = splitNotes(entered.notes);
   return [
-    ...(judged ? implementedLoop(judged, time) : []),
+    ...(judged ? implementedLoop(judged) : []),
     ...noteList("Where this product differs", deviations),
     ...(entered.notes.length > 0 ? [h("p", { class: "hint" }, noteTimes(time))] : []),
     h("p", { class: "evidence" }, h("strong", {}, "Evidence. "), evidenceSentence(product.evidence)),
@@ -41,16 +43,11 @@ const noteItems = (notes: AsEntered["notes"]): HTMLElement =>
 const noteList = (heading: string, notes: AsEntered["notes"]): HTMLElement[] =>
   notes.length === 0 ? [] : [h("h3", {}, heading), noteItems(notes)];
 
-function implementedLoop(judged: Judged, time: string): HTMLElement[] {
-  const { implemented } = judged;
-  const sampling = samplingSentences(judged, time).join(" ");
-  return [
-    implemented
-      ? builtTable(builtRows(judged, implemented))
-      : h("p", { class: "hint" }, "The implemented loop was not evaluated: only the settings were converted."),
-    ...(sampling ? [h("p", { class: "hint" }, sampling)] : []),
-  ];
-}
+const implementedLoop = (judged: Judged): HTMLElement[] => [
+  judged.implemented
+    ? builtTable(builtRows(judged, judged.implemented))
+    : h("p", { class: "hint" }, "The implemented loop was not evaluated: only the settings were converted."),
+];
 
 function builtTable(rows: BuiltRow[]): HTMLElement {
   const head = (text: string): HTMLElement => h("th", { scope: "col" }, text);

@@ -5,7 +5,8 @@ import { formatNumber } from "../../words/numbers.ts";
 
 export interface ProgressCard {
   element: HTMLElement;
-  show(job: Job): void;
+  /** `what`: the reason for it, if the search is not what the user waits for. */
+  show(job: Job, what?: string): void;
 }
 
 const STAGES: Record<string, string> = {
@@ -14,6 +15,8 @@ const STAGES: Record<string, string> = {
   schedule: "Searching for the schedule",
   evaluate: "Computing the figures",
 };
+
+const KEPT = "The settings stay as they are. The designs beside them are computed again for the report and the change sheet.";
 
 /** Time between two spoken updates. */
 const SPEAK_EVERY_MS = 5000;
@@ -36,15 +39,15 @@ export function progressCard(announce: (sentence: string) => void, onCancel: () 
   );
   return {
     element,
-    show(job) {
+    show(job, what = "") {
       const progress = job.progress;
       const fraction = typeof progress?.fraction === "number" ? Math.min(1, Math.max(0, progress.fraction)) : 0;
       bar.value = fraction;
       const words = STAGES[progress?.stage ?? ""] ?? (progress?.stage || "Working");
       stage.textContent =
-        job.status === "queued" ? "Waiting for its turn" : `${words}: ${Math.round(100 * fraction)} %`;
-      message.textContent = progress?.message ?? "";
-      best.textContent = bestWords(progress?.best);
+        job.status === "queued" ? "Waiting for its turn" : `${what || words}: ${Math.round(100 * fraction)} %`;
+      message.textContent = what ? KEPT : (progress?.message ?? "");
+      best.textContent = what ? "" : bestWords(progress?.best);
       if (Date.now() - spoken > SPEAK_EVERY_MS) {
         spoken = Date.now();
         announce(stage.textContent);

@@ -98,7 +98,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     if (!isNewest()) return;
     status.className = large ? "trouble" : "hint";
     if (large) {
-      status.textContent = large;
+      status.textContent = csv.read().trim() === "" ? large : `${large} The record in the box is still the one before.`;
       return;
     }
     errors.clear();
@@ -175,6 +175,8 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
   element.addEventListener("drop", (event) => {
     event.preventDefault();
     drop.classList.remove("over");
+    // A field that is being typed in reports its text when it is left, which a drop does not do.
+    if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
     void take(event.dataTransfer?.files[0]);
   });
   element.addEventListener("submit", (event) => {

@@ -34,13 +34,18 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
   const recordLink = h("a", { href: "#/" }, "Look at the record");
   const report = reportLink();
   const sheet = reportLink("Change sheet", "change-sheet.html");
+  const ofKept = h(
+    "span",
+    { class: "hint", hidden: true, title: "They are pages of a kept design: press Keep next to the sliders." },
+    "Report, change sheet: keep the design first",
+  );
   const element = h(
     "section",
     { class: "card title" },
     heading,
     plantLine,
     formula,
-    h("p", { class: "actions" }, editLink, recordLink, report.element, sheet.element, actions, link.element, menu.element),
+    h("p", { class: "actions" }, editLink, recordLink, report.element, sheet.element, ofKept, actions, link.element, menu.element),
   );
   let about: Job | null = null;
   let chosen: number | null = null;
@@ -51,6 +56,7 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
     const entries = about?.result?.controllers ?? [];
     const shown = chosen === null ? entries : entries.filter((_, index) => index === chosen);
     const hasChange = shown.some((entry) => entry.controller && entry.method !== "baseline");
+    ofKept.hidden = own || !about?.result;
     const date = about?.finished_at ?? null;
     report.show(id, date, chosen);
     sheet.show(hasChange ? id : null, date, chosen);

@@ -63,7 +63,7 @@ test("nothing moves under the pointer while a curve is dragged", async () => {
     await page.mouse.down();
     for (let step = 1; step <= 4; step += 1) {
       await page.mouse.move(handle.x - 2 * step, handle.y + step);
-      await page.getByText("moved by the sliders").waitFor();
+      await page.locator(".whose", { hasText: "moved by the sliders" }).waitFor();
       assert.equal(await top(), before, `after ${step} moves`);
     }
     await page.mouse.up();

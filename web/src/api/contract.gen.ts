@@ -209,6 +209,7 @@ export type components = {
       u?: number[];
       y?: number[];
       r?: number[];
+      mode?: string[];
       d?: components["schemas"]["MeasuredDisturbance"][];
       csv?: string;
       columns?: components["schemas"]["Columns"];
@@ -237,6 +238,7 @@ export type components = {
       u?: string | number;
       y?: string | number;
       r?: string | number;
+      mode?: string | number;
       d?: (string | number)[];
     };
     UltimateTest: {

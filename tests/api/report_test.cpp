@@ -120,7 +120,7 @@ TEST(Report, TheHeadOfAChangeSheetNamesTheProductOnlyIfItTakesTheSettings) {
 TEST(Report, AChangeSheetTellsWhichOfTodaysSettingsMustBeNotedToGoBack) {
     const auto entered = [](const char* method, const std::string& typed, const std::string& notes) {
         return R"({"method": ")" + std::string(method) + R"(", "controller": {"form": "ideal", "Kp": 1, "Ti": 20},
-            "as_entered": {"product": "deltav", "as_typed": )" +
+            "as_entered": {"product": "emerson_deltav_standard", "as_typed": )" +
                typed + R"(, "notes": )" + notes + "}}";
     };
     const std::string next = entered("robust", R"({"GAIN": "2.0", "STRUCTURE": "I on error"})", "[]");
@@ -130,11 +130,11 @@ TEST(Report, AChangeSheetTellsWhichOfTodaysSettingsMustBeNotedToGoBack) {
     };
     const std::string in_part = sheet_with(R"({"GAIN": "1.0"})");
     EXPECT_EQ(count(in_part, "<td>note it: ______</td>"), 1u);
-    EXPECT_THAT(in_part, HasSubstr("Today's settings: STRUCTURE = PI on error."));
-    EXPECT_THAT(in_part, HasSubstr("Some of today's settings are unknown"));
+    EXPECT_THAT(in_part, HasSubstr("settings: STRUCTURE = PI on error."));
+    EXPECT_THAT(in_part, HasSubstr("settings are unknown: before you change anything, write the value"));
     const std::string whole = sheet_with(R"({"GAIN": "1.0", "STRUCTURE": "PI on error"})");
     EXPECT_EQ(count(whole, "note it"), 0u);
-    EXPECT_THAT(whole, Not(HasSubstr("are unknown")));
+    EXPECT_THAT(whole, Not(HasSubstr("settings are unknown")));
 }
 
 TEST(Report, AChangeSheetNamesWhatSpeaksAgainstTheChange) {

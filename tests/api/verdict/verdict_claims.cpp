@@ -217,6 +217,12 @@ void check_finding(const Json& entry, const Json* today, const Json& finding, co
     if (code == "replay") {
         const double low = *at(entry, "/replay/IAE_ratio_low"), high = *at(entry, "/replay/IAE_ratio_high");
         fault(finding["level"] != (high < 1 ? "good" : low > 1 ? "warning" : "note"), "the band lies elsewhere");
+        if (figures.contains("travel_over_today")) {
+            const auto travel = [](const Json* one) { return one ? at(*one, "/replay/figures/travel") : std::nullopt; };
+            const auto here = travel(&entry), before = travel(today);
+            fault(!here || !before || std::abs(*here / *before / figures["travel_over_today"].get<double>() - 1) > 1e-9,
+                  "not the ratio of travel");
+        }
     }
     if (code == "own-step-saturates") {
         const auto spent = [&](const char* name) {

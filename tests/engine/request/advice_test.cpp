@@ -325,7 +325,7 @@ TEST(Advice, OnEquationsTheStepThatTheActuatorCarriesIsWhereTheyComeToRest) {
 
 /// Overshoot in percent if the set point changes in many small steps, over this duration together.
 double overshoot_of_steps(const LinearPlant& plant, const SampledPid& law, double duration) {
-    constexpr int kSteps = 100, kTimes = 1500;
+    constexpr int kSteps = 100, kTimes = 20000;
     const StepResponse step = simulate_sampled(plant, law, {}, {1, 0}, {});
     const double horizon = step.nodes.back().t, spacing = horizon / kTimes;
     const auto y = sampled(step.nodes, horizon, kTimes + 1);

@@ -150,7 +150,7 @@ TuningEntry entry_with(double Ms, std::optional<double> worst_Ms = {}, std::opti
     }
     if (Ms_as_built) {
         entry.on_device.emplace();
-        entry.on_device->loop = {evaluation.robustness, evaluation.performance, {}, {}};
+        entry.on_device->loop = {evaluation.robustness, evaluation.performance, {}, evaluation.region};
         entry.on_device->loop.robustness.Ms = Figure(*Ms_as_built);
     }
     entry.evaluation = std::move(evaluation);

@@ -151,9 +151,9 @@ test("an answer about settings that a slider replaces is not shown; the release 
     const answered = page.waitForResponse("**/v1/evaluate").catch(() => null);
     release();
     await Promise.race([answered, page.waitForTimeout(1000)]);
-    assert.equal(await page.getByRole("heading", { name: /^Type into/ }).count(), 0);
+    assert.equal(await page.locator("table.typed tbody tr").count(), 0);
     await page.mouse.up();
-    await page.getByRole("heading", { name: /^Type into/ }).waitFor();
+    await page.locator("table.typed tbody tr").first().waitFor();
     await page.getByText("robust, moved by the sliders", { exact: true }).waitFor();
   });
 });
@@ -370,14 +370,19 @@ test("values typed one after another without a pause, or pasted, are all kept, w
     });
     await page.getByRole("button", { name: "Type other values" }).click();
     const field = (name) => page.getByRole("textbox", { name: `${name}, new` });
+    /** Past the copy button and the label of the next row. */
+    const goOn = async (key, name) => {
+      const reached = () => field(name).evaluate((input) => document.activeElement === input);
+      for (let stops = 0; stops < 4 && !(await reached()); stops += 1) await page.keyboard.press(key);
+      assert.ok(await reached(), name);
+    };
     await field("GAIN").selectText();
     for (const [name, text] of [["GAIN", "1.1"], ["RESET", "75"], ["RATE", "2.5"]]) {
-      assert.equal(await field(name).evaluate((input) => document.activeElement === input), true, name);
+      await goOn("Tab", name);
       await page.keyboard.press("Control+a");
       await page.keyboard.type(text, { delay: 60 });
-      await page.keyboard.press("Tab");
-      await page.keyboard.press("Tab");
     }
+    await page.keyboard.press("Tab");
     await settled();
     const shown = async () => [await field("GAIN").inputValue(), await field("RESET").inputValue(), await field("RATE").inputValue()].map(Number);
     assert.deepEqual(await shown(), [1.1, 75, 2.5]);
@@ -386,8 +391,7 @@ test("values typed one after another without a pause, or pasted, are all kept, w
     // A pasted text is one event.
     await field("RATE").selectText();
     await page.keyboard.insertText("3");
-    await page.keyboard.press("Shift+Tab");
-    await page.keyboard.press("Shift+Tab");
+    await goOn("Shift+Tab", "RESET");
     await page.keyboard.press("Control+a");
     await page.keyboard.insertText("60");
     await page.keyboard.press("Tab");

@@ -151,7 +151,7 @@ test("an answer about settings that a slider replaces is not shown; the release 
     const answered = page.waitForResponse("**/v1/evaluate").catch(() => null);
     release();
     await Promise.race([answered, page.waitForTimeout(1000)]);
-    assert.equal(await page.locator("table.typed tbody tr").count(), 0);
+    assert.equal(await page.locator("table.typed:visible tbody tr").count(), 0);
     await page.mouse.up();
     await page.locator("table.typed tbody tr").first().waitFor();
     await page.getByText("robust, moved by the sliders", { exact: true }).waitFor();

@@ -98,7 +98,7 @@ test("long names and units stay in their place", async () => {
       plant: { type: "fopdt", K: 1.25, T: 40, L: 8 },
     });
     await page.goto(`${tests.service.base}/#/jobs/${id}/design`);
-    const label = page.locator(".controls .tight .slider label").first();
+    const label = page.locator(".controls .tight .slider > .label").first();
     await label.waitFor();
     const range = await page.locator(".controls .tight input[type=range]").first().boundingBox();
     const box = await label.boundingBox();

@@ -43,6 +43,14 @@ export function sameImplement(a: Spans | null | undefined, b: Spans | null | und
   return keyOf(a) === keyOf(b);
 }
 
+/** True if a request is for this controller: ranges that the product does not need do not count. */
+export function isFor(implement: Spans | null | undefined, mine: MyController | null): boolean {
+  const ofMine = implementOf(mine);
+  if (!mine || implement?.product !== mine.product) return sameImplement(implement, ofMine);
+  const { product, name, needs } = mine;
+  return sameImplement(implementOf(mineOfRequest(implement, { product, name, needs })), ofMine);
+}
+
 /** The controller for which a request was made; the current one if it names none. A request contains neither name
     nor needs. */
 export function mineOfRequest(implement: Implement | undefined, mine: MyController | null): MyController | null {

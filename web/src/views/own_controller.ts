@@ -9,7 +9,7 @@ import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { choicesOf } from "../form/product_settings.ts";
 import { givenBaseline, withBaseline, withImplement } from "../form/tuning_request.ts";
-import { implementOf, inUnits, mineOfRequest, named, rememberMine, sameImplement, typedInto } from "../my_controller.ts";
+import { implementOf, inUnits, isFor, mineOfRequest, named, rememberMine, sameImplement, typedInto } from "../my_controller.ts";
 import type { MyController } from "../my_controller.ts";
 import type { Store } from "../store.ts";
 import { formOf, formRows, productRows } from "../words/answer.ts";
@@ -165,7 +165,7 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
   function todaysTyped(product: Product): Record<string, SettingValue> {
     const { implement } = shown!.request;
     const baseline = givenBaseline(shown!.request);
-    const written = sameImplement(implement, implementOf(mine)) ? todayEntry()?.as_entered?.as_typed : undefined;
+    const written = isFor(implement, mine) ? todayEntry()?.as_entered?.as_typed : undefined;
     return { ...written, ...(baseline?.product === product.id ? baseline.settings : {}) };
   }
 
@@ -284,7 +284,7 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
   function showRedesign(): void {
     const before = shown?.request.implement;
     const implement = implementOf(mine);
-    redesign.hidden = !shown || sameImplement(before, implement) || (mine !== null && !implement);
+    redesign.hidden = !shown || isFor(before, mine) || (mine !== null && !implement);
     redesign.textContent = mine ? "Design for this controller" : "Design for an ideal controller";
   }
 
@@ -321,7 +321,7 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
     const key = keyOf(implement, controller);
     if (key === asked) return;
     asked = key;
-    const known = !tried && sameImplement(request.implement, implement) ? entry.as_entered : undefined;
+    const known = !tried && isFor(request.implement, mine) ? entry.as_entered : undefined;
     if (known) {
       onJudged(null);
       calls.drop();
@@ -411,7 +411,7 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
 
   /** Settings that were typed into another product than the chosen one, such as those of a link. */
   function bringsProduct({ implement: before }: TuningRequest, { implement }: TuningRequest): boolean {
-    return implement?.product !== undefined && !sameImplement(implement, before) && !sameImplement(implement, implementOf(mine));
+    return implement?.product !== undefined && !sameImplement(implement, before) && !isFor(implement, mine);
   }
 
   return {
@@ -435,7 +435,7 @@ export function ownController(store: Store, { announce, retune, onByHand, onJudg
       const entry = next.result.controllers[next.index];
       const implement = implementOf(mine);
       if (!implement) return showForm();
-      const entered = sameImplement(next.request.implement, implement) ? entry?.as_entered : undefined;
+      const entered = isFor(next.request.implement, mine) ? entry?.as_entered : undefined;
       const product = knownProduct(implement.product);
       if (entered && product) showTyped(product, entered, entry!);
     },

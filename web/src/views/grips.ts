@@ -57,7 +57,15 @@ export interface ShownDesign {
 
 export function plotGrips(sliders: GripSliders, shown: () => ShownDesign): Grips {
   /** The drag that is going on. */
-  let pursuit: { slider: MovableSlider; target: number; known: KnownFigure[]; figure: (entry: Entry) => number | null; rises: boolean } | null = null;
+  let pursuit: {
+    slider: MovableSlider;
+    target: number;
+    known: KnownFigure[];
+    figure: (entry: Entry) => number | null;
+    rises: boolean;
+    /** The value that was requested last. */
+    asked?: number;
+  } | null = null;
   let began: number | null = null;
 
   const find = (id: string): MovableSlider | undefined => sliders.movable().find((slider) => slider.id === id);
@@ -68,13 +76,15 @@ export function plotGrips(sliders: GripSliders, shown: () => ShownDesign): Grips
     sliders.turn(slider.id, Math.min(slider.hi, Math.max(slider.lo, value)), released);
   }
 
-  /** The next value of the slider; the same one is not requested again. */
+  /** The next value of the slider; the same one is not requested again, also where the slider has rounded it. */
   function step(released: boolean): void {
     if (!pursuit) return;
     const { slider, target, known, rises } = pursuit;
     const now = find(slider.id)?.value ?? slider.value;
     const next = known.length === 0 ? now : pursue(known, target, slider.lo, slider.hi, rises);
-    if (released || Math.abs(next - now) > 1e-9 * Math.abs(now)) sliders.turn(slider.id, next, released);
+    if (!released && (pursuit.asked === next || Math.abs(next - now) <= 1e-9 * Math.abs(now))) return;
+    pursuit.asked = next;
+    sliders.turn(slider.id, next, released);
   }
 
   function learn(): void {

@@ -25,8 +25,23 @@ constexpr RatioPhrase kRatioPhrases[] = {{0.09, 0.11, "about a tenth of"},
                                          {1.9, 2.1, "about twice"},
                                          {2.85, 3.15, "about three times"}};
 
-/// Says what keeps the overshoot within `percent`, as tried on the implemented loop.
+/// True: a note on the settings names the lag of the set point that the design has and the product does not.
+bool lag_is_noted(const VerdictInput& c) {
+    return c.on_device() && std::ranges::any_of(c.entry.on_device->fitted.notes,
+                                                [](const auto& note) { return note.code == "setpoint-filter"; });
+}
+
+/// Says what keeps the overshoot within `percent`, as tried on the implemented loop; no second lag next to a note's.
 void say_cure(FindingBuilder& draft, const VerdictInput& c, double percent) {
+    if (lag_is_noted(c)) {
+        if (const auto ramp = overshoot_ramp(c, percent))
+            draft.say(" A ramp of the set point over ")
+                .number("setpoint_ramp", *ramp, printed_unit(c.context.labels.time))
+                .say(" keeps it within ")
+                .number("kept_percent", percent, "%")
+                .say(".");
+        return;
+    }
     const auto cure = overshoot_cure(c, percent);
     if (!cure) return;
     const std::string time = printed_unit(c.context.labels.time);

@@ -60,9 +60,9 @@ test("focus and taps move nothing, and a tap leaves no ring", async () => {
     await designOf(page);
     const places = () =>
       page.locator("main section, main .canvas").evaluateAll((all) =>
-        all.map((item) => {
+        all.flatMap((item) => {
           const { top, height } = item.getBoundingClientRect();
-          return [Math.round(top + scrollY), Math.round(height)];
+          return height > 0 ? [[Math.round(top + scrollY), Math.round(height)]] : [];
         }),
       );
     const before = await places();

@@ -129,7 +129,7 @@ test("a range that was given in another unit is not taken along by a file that n
     await chooseProduct(page, who, "deltav standard", DELTAV);
     await giveMeasurementRange(page, who, "0", "10");
     await press(page, "Tune this model");
-    await page.locator("table.typed tbody tr").first().waitFor();
+    await page.getByRole("heading", { name: /^Type into/ }).waitFor();
     await page.getByRole("link", { name: "Start", exact: true }).click();
     await dropped(page);
     const range = page.getByRole("group", { name: "Measurement range (°C)" });

@@ -68,7 +68,8 @@ TEST(DeviceSetpoint, OfAFixedWeightSaysWhatItOvershoots) {
             EXPECT_TRUE(note.code != "prefilter" && note.code != "setpoint-filter") << product << ": " << note.detail;
         return found != verdict.end() ? found->text : std::string();
     };
-    EXPECT_THAT(said("siemens_fb41_cont_c"), testing::HasSubstr("on the set point, or a ramp of it over 171 s, keeps it within 12.0 %"));
+    EXPECT_THAT(said("siemens_fb41_cont_c"),
+                testing::HasSubstr("on the set point, or a ramp of it over 171 s, keeps it within 12.0 %"));
     // The weight that can be set is chosen with the continuous ideal form: the sampled loop overshoots by half a point
     // more, which is reported.
     EXPECT_THAT(said("discretepids_jl"), testing::HasSubstr("by 12.5 %, more than the 12.0 % asked for"));

@@ -38,7 +38,8 @@ constexpr std::array kFigures = {
     Column{"settling_time", "/performance/setpoint/settling_time"},
 };
 
-/// A stored text as a tree. A batch has hundreds of megabytes of results, of which a line of CSV needs a few numbers.
+/// A stored text as a tree. The results of a batch are hundreds of megabytes, and a line of CSV needs only a few of
+/// their numbers, so this reader must be fast.
 using Value = rapidjson::Value;
 
 std::string_view text_of(const Value& value) { return {value.GetString(), value.GetStringLength()}; }

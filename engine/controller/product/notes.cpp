@@ -139,7 +139,7 @@ const char* rule_name(IntegralRule rule) {
     return "backward";
 }
 
-/// What the notes on a block itself depend on.
+/// The input of the notes on a block itself.
 struct BlockLaw {
     const Product& product;
     const IdealPid& realised;

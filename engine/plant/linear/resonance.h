@@ -1,4 +1,4 @@
-// Whether a plant oscillates by itself.
+// The test for a plant with an oscillation of its own.
 //
 //   if (is_resonant(plant)) ...   // look for further local minima
 //

@@ -187,7 +187,7 @@ private:
         return rests(loop) && std::abs(loop.response.y_final - course_.r) <= kRestTolerance * size;
     }
 
-    /// The reason why the integral of the error from there to the end is no figure; null: it is one.
+    /// The reason for having no integral of the error up to the end; null: there is one.
     const char* no_integral(const RunningLoop& loop) const {
         if (!loop.whole) return loop.to_rest && loop.response.nodes.back().t > load_start() ? kNeverThere : kCut;
         return loop.to_rest && !rests_at_target(loop) ? kNeverThere : nullptr;

@@ -87,6 +87,14 @@ const LinearPlant* only_linear(const VerdictInput& c) {
     return c.context.subject.equations() == nullptr ? c.context.subject.linear() : nullptr;
 }
 
+/// The law of the loop that runs, in the ideal form; empty: it has no ideal form, or it is nonlinear.
+std::optional<IdealPid> running_law(const VerdictInput& c) {
+    if (std::holds_alternative<Npid>(c.evaluation.controller)) return std::nullopt;
+    if (c.on_device()) return c.entry.on_device->fitted.controller;
+    const auto ideal = to_ideal(c.evaluation.controller);
+    return ideal ? std::optional(*ideal) : std::nullopt;
+}
+
 MethodOptions with_filter_time(const MethodOptions& options, double Tf) {
     MethodOptions changed;
     for (const auto& [path, value] : options.values())
@@ -100,9 +108,8 @@ MethodOptions with_filter_time(const MethodOptions& options, double Tf) {
 std::optional<SetpointCure> overshoot_cure(const VerdictInput& c, double percent) {
     const LinearPlant* plant = only_linear(c);
     const bool product = c.on_device() && c.entry.on_device->fitted.product != nullptr;
-    const auto pid =
-        c.on_device() ? Expected<IdealPid>(c.entry.on_device->fitted.controller) : to_ideal(c.evaluation.controller);
-    if (plant == nullptr || !pid || std::holds_alternative<Npid>(c.evaluation.controller)) return std::nullopt;
+    const auto pid = running_law(c);
+    if (plant == nullptr || !pid) return std::nullopt;
     // The series form has weights of its own, and the design of a product decides its weights.
     const bool may_weigh = !product && std::holds_alternative<IdealPid>(c.evaluation.controller);
     const auto stopped = [&] { return c.context.control.stop.stop_requested(); };
@@ -127,10 +134,8 @@ std::optional<SetpointCure> overshoot_cure(const VerdictInput& c, double percent
 
 std::optional<double> overshoot_ramp(const VerdictInput& c, double percent) {
     const LinearPlant* plant = only_linear(c);
-    const auto pid =
-        c.on_device() ? Expected<IdealPid>(c.entry.on_device->fitted.controller) : to_ideal(c.evaluation.controller);
-    if (plant == nullptr || !pid || c.context.options.actuator || c.context.control.stop.stop_requested() ||
-        std::holds_alternative<Npid>(c.evaluation.controller))
+    const auto pid = running_law(c);
+    if (plant == nullptr || !pid || c.context.options.actuator || c.context.control.stop.stop_requested())
         return std::nullopt;
     const StepResponse step = response_with(c, *plant, {pid->b, 0});
     if (!step.settles) return std::nullopt;

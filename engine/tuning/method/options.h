@@ -38,7 +38,7 @@ struct OptionSlider {
     std::optional<double> step = {};  ///< smallest step; empty: the form's own
     std::string label = {};           ///< empty: the option's name
     std::string low = {}, high = {};  ///< the meaning of its ends, in a word or two
-    /// Of a group one option has its slider: the first given, else the last with a known value; none without figures.
+    /// In a group only one option has a slider: the first that is given, else the last whose value is known, if any is.
     std::string group = {};
     std::string moves_with = {};                 ///< another option that moves too, as long as both have the same value
     DesignFigure value_of = DesignFigure::none;  ///< figure of the design that is the option's value if none was given

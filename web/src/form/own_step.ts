@@ -4,6 +4,7 @@ import type { FieldError, Model, OwnStep, Result, Span, TuningRequest } from "..
 import { exactText } from "../words/numbers.ts";
 import { usualSpan } from "../words/record_names.ts";
 import { parseNumber } from "./number.ts";
+import { defined } from "./tuning_request.ts";
 
 const NUMBERS = ["y", "u", "target", "ramp_rate", "u_min", "u_max", "hold", "load.size", "load.duration", "length"] as const;
 const WORDS = ["load.at", "load.shape"] as const;
@@ -82,9 +83,6 @@ export function readStep(texts: StepTexts): StepReading {
   const step = { ...defined(Object.fromEntries(own.map((name) => [name, number(name, name === "target")]))), ...(load ? { load } : {}) };
   return { step: errors.length > 0 ? null : (step as unknown as OwnStep), errors };
 }
-
-const defined = (values: Record<string, unknown>): Record<string, unknown> =>
-  Object.fromEntries(Object.entries(values).filter(([, value]) => value !== undefined));
 
 /** Digits of a level that a record shows. */
 const LEVEL_DIGITS = 4;

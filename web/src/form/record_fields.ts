@@ -6,6 +6,7 @@ import type { Field } from "./controls.ts";
 import type { FormErrors } from "./errors.ts";
 import { openAround } from "./errors.ts";
 import { parseNumber, parseNumbers } from "./number.ts";
+import { defined } from "./tuning_request.ts";
 
 export type Identify = Record<string, unknown>;
 
@@ -239,9 +240,6 @@ function choose(select: HTMLSelectElement, value: string): void {
   if (![...select.options].some((option) => option.value === value)) select.append(h("option", { value }, value));
   select.value = value;
 }
-
-const defined = (values: Identify): Identify =>
-  Object.fromEntries(Object.entries(values).filter(([, value]) => value !== undefined));
 
 /** A column is named by its heading, or by its number from 1. */
 const columnOf = (text: string): string | number => (/^[1-9]\d*$/.test(text) ? Number(text) : text);

@@ -2,6 +2,10 @@
 // lambda for one of its entries, and for the same subject with every method.
 import type { Candidate, Entry, GivenController, IdentifyRequest, Implement, Method, Model, OwnStep, Plant, Result, TuneEntry, TuningRequest, TypedSettings } from "../api/types.ts";
 
+/** Without the members that are undefined. */
+export const defined = <T extends object>(values: T): T =>
+  Object.fromEntries(Object.entries(values).filter(([, value]) => value !== undefined)) as T;
+
 /** The subject for a candidate that was chosen on Identify: its record if that leads to the same model again, else
     its plant. */
 export type TuneSubject =

@@ -7,7 +7,7 @@ import { FormErrors } from "../form/errors.ts";
 import { keptNote, objectOf } from "../form/kept_note.ts";
 import type { PlantReading } from "../form/plant.ts";
 import { atRecordText } from "../form/record_text.ts";
-import { byAllMethods, EVERY_METHOD, withImplement } from "../form/tuning_request.ts";
+import { byAllMethods, defined, EVERY_METHOD, withImplement } from "../form/tuning_request.ts";
 import type { TuneSubject } from "../form/tuning_request.ts";
 import { implementOf, inUnits, mineOfRequest, named, rememberMine } from "../my_controller.ts";
 import type { MyController } from "../my_controller.ts";
@@ -512,7 +512,3 @@ function kindOf({ record, ultimate, plant }: TuningRequest): LoopKind {
   if (ultimate) return "ultimate";
   return plant?.type === "nonlinear" ? "equations" : "model";
 }
-
-/** JSON has no undefined; the values for comparison must not have it either. */
-const defined = (values: Record<string, unknown>): Record<string, unknown> =>
-  Object.fromEntries(Object.entries(values).filter(([, value]) => value !== undefined));

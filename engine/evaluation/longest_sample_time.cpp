@@ -47,6 +47,8 @@ constexpr double kTolerance = 5e-5;           // relative tolerance of a guessed
 constexpr double kExactTolerance = 1e-6;      // relative tolerance of a confirmed one, and of its Ms
 constexpr double kNearbyFactor = 1.03;        // ratio of successive sample times near an inexact guess
 constexpr int kMaxNearby = 10;
+constexpr int kMaxPeaks = 3;                  // peaks of the loop that are followed, one after the other
+constexpr double kOtherPeak = 0.3;            // in ln omega: a peak further off is another one
 constexpr double kMaxWholeLoopDifference = 1e-3;  // relative: Ms of the whole loop against the guess
 
 /// The peak of |S| nearest to its last frequency, followed as the sample time changes. It does not notice another peak
@@ -205,8 +207,8 @@ private:
     }
 
     /// The first sample time below a guess at which the peak reaches the limit, edge by edge.
-    double first_reached(double guess) const {
-        TrackedPeak peak(plant_, gains_, omega_Ms_);
+    double first_reached(double guess, double omega) const {
+        TrackedPeak peak(plant_, gains_, omega);
         const auto exactly = [&](double Ts) {
             const double roughly = excess(peak.roughly(Ts));
             return roughly < -kMaxRoughLogError ? roughly : excess(peak.exactly(Ts));
@@ -244,27 +246,49 @@ private:
         return true;
     }
 
-    /// Without a resonance the continuous loop's peak nearly decides: it gives a guess that the whole loop confirms.
+    /// Without a resonance a peak of the continuous loop nearly decides: it gives a guess that the whole loop confirms.
+    /// That is mostly the peak at `omega_Ms`; a design at its limit often has two of equal height, and another may
+    /// become the higher one.
     std::optional<double> by_peak() {
-        TrackedPeak peak(plant_, gains_, omega_Ms_);
+        double omega = omega_Ms_;
+        for (int peaks = 0; peaks < kMaxPeaks; ++peaks) {
+            const Guess found = by_peak_at(omega);
+            if (found.confirmed) return found.longest;
+            const double higher = loop(found.longest).sensitivity_peak().omega;
+            if (!(std::abs(std::log(higher / omega)) > kOtherPeak)) break;
+            omega = higher;
+        }
+        search_below();
+        return std::nullopt;
+    }
+
+    struct Guess {
+        double longest = 0;      ///< sample time; not confirmed: one at which another peak may be the higher one
+        bool confirmed = false;  ///< by the whole loop
+    };
+
+    Guess by_peak_at(double omega) {
+        TrackedPeak peak(plant_, gains_, omega);
         auto Ts = guess(peak);
-        if (!Ts || *Ts < shortest() || *Ts * omega_Ms_ > kMaxTurn) return std::nullopt;
-        const bool edges = has_edges(plant_, *Ts);
-        if (edges) Ts = std::max(first_reached(*Ts), shortest());
+        if (!Ts || *Ts < shortest() || *Ts * omega > kMaxTurn) return {std::max(kMaxTurn / omega, shortest())};
+        edges_ = has_edges(plant_, *Ts);
+        if (edges_) Ts = std::max(first_reached(*Ts, omega), shortest());
         low_ = std::max(kShorterFactor * *Ts, shortest());
-        bool borne = bears(*low_) && (!edges || bears_edges(*Ts, *low_));
+        borne_ = bears(*low_) && (!edges_ || bears_edges(*Ts, *low_));
         // The guess's own peak is at the limit, so the whole loop gives no longer sample time.
-        if (borne && loop(*Ts).keeps(limit_ * (1 + kMaxWholeLoopDifference))) return Ts;
-        // Another peak of the loop has become the higher one: the solution is not far below, but edges may hide it.
-        if (edges) low_.reset();
+        return {*Ts, borne_ && loop(*Ts).keeps(limit_ * (1 + kMaxWholeLoopDifference))};
+    }
+
+    /// Another peak of the loop has become the higher one: the solution is not far below, but edges may hide it.
+    void search_below() {
+        if (edges_) low_.reset();
         while (low_ && *low_ > shortest()) {
             const double lower = std::max(kShorterFactor * *low_, shortest());
             const bool lower_borne = bears(lower);
-            if (borne && lower_borne) break;
+            if (borne_ && lower_borne) break;
             low_ = lower;
-            borne = lower_borne;
+            borne_ = lower_borne;
         }
-        return std::nullopt;
     }
 
     /// The first sample time, searched upwards from short ones, that the whole loop does not tolerate.
@@ -335,6 +359,8 @@ private:
     std::vector<Mode> modes_;
     double Mks_;
     std::optional<double> low_;  // start of the steps
+    bool edges_ = false;         // Ms has edges over the sample time
+    bool borne_ = false;         // the loop tolerates low_
 };
 
 }  // namespace

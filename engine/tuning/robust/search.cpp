@@ -8,6 +8,7 @@
 #include "engine/numerics/optimise/direct_search.h"
 #include "engine/plant/linear/resonance.h"
 #include "engine/tuning/limits.h"
+#include "engine/tuning/robust/known_start.h"
 #include "engine/tuning/robust/starts.h"
 
 namespace tunewright::robust {
@@ -23,6 +24,7 @@ struct FastSearchConstants {
     double slow_zero = 0.3;            ///< multiple of the reference: a filter below such a zero may give another local
                                        ///< minimum
     double short_Td = 0.1;             ///< multiple of 1/reference: below it the cost hardly depends on ln Td
+    double known_radius = 0.1;         ///< first trust region about a start that is nearly the optimum
     double same_design = 0.02;         ///< in each logarithm: two ends closer than this are equal
     double same_valley = 0.1;          ///< in each logarithm: a rough run this close to an end leads to it
     double hopeless_cost = 0.7;        ///< a start this much costlier than the best is skipped
@@ -249,9 +251,26 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& probl
     if (any_plant(problem, may_have_islands)) runs.explore(lowest_cost_island(sweep, problem, runs.best()->log_cost));
 }
 
+/// From where the optimum is known to be nearly, one run without a scan; empty if it did not converge, or ended where
+/// the cost is flat.
+std::optional<DesignResult> from_known_start(const Sweep& sweep, const DesignProblem& problem, const Report& report) {
+    const auto start = known_start(problem);
+    if (!start) return std::nullopt;
+    bool stopped = false;
+    const Report watch = [&](const DesignPoint& x, double cost) {
+        stopped = report && !report(x, cost);
+        return !stopped;
+    };
+    const SqpResult found = minimise(sweep, problem, *start, {.trust_radius = k.known_radius}, watch);
+    if (!std::isfinite(found.log_cost) || !(found.converged || stopped)) return std::nullopt;
+    if (problem.pid && found.x[2] <= short_Td(sweep)) return std::nullopt;
+    return DesignResult{found.x, found.log_cost, stopped, found.curvature};
+}
+
 }  // namespace
 
 std::optional<DesignResult> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report) {
+    if (auto found = from_known_start(sweep, problem, report)) return found;
     std::vector<ScanPoint> points;
     for (const ScanBox& box : {ScanBox{}, kBoxes.slow, kBoxes.close})
         if (points.empty()) points = scan(sweep, box);

@@ -6,12 +6,15 @@
 
 #include <cmath>
 #include <random>
+#include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "engine/loop/loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/sampled/sampled_loop.h"
 #include "engine/loop/stability.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright {
 namespace {
@@ -83,6 +86,31 @@ TEST(LongestSampleTimeOfDeadTime, AllShorterOnesKeepItsPromise) {
         SCOPED_TRACE(testing::Message() << "loop " << made << ", L " << L << ", Kp " << loop->gains.Kp << ", Ki "
                                         << loop->gains.Ki << ", Kd " << loop->gains.Kd);
         holds_below(*loop);
+    }
+}
+
+/// A design at its limit often has two peaks of |S| of one height: whichever counts as the peak, the sample time is the
+/// same.
+TEST(LongestSampleTimeOfDeadTime, OfTwoEqualPeaksEitherMayBeTheFirst) {
+    const LinearPlant plant = *LinearPlant::make(Fopdt{.K = 1, .T = 1, .L = 4});
+    const TuningProblem problem{Fopdt{.K = 1, .T = 1, .L = 4}, plant, std::nullopt};
+    const TuningMethod& robust = *find_method("robust");
+    const auto tuned = robust.tune(problem, with_defaults(robust.options, {}), {});
+    ASSERT_TRUE(tuned);
+    const ParallelPid gains = to_parallel(tuned->controller);
+    const auto loop = Loop::make(plant, gains);
+    ASSERT_TRUE(loop);
+    std::vector<double> tops;
+    const auto S = [&](double omega) { return std::abs(loop->at(omega).S); };
+    for (double omega = 0.05; omega < 20; omega *= 1.002)
+        if (S(omega) > 1.39 && S(omega) > S(omega / 1.002) && S(omega) > S(omega * 1.002)) tops.push_back(omega);
+    ASSERT_GE(tops.size(), 2U);
+    std::optional<double> first;
+    for (const double omega : tops) {
+        const auto Ts = longest_sample_time(plant, gains, 1.4, omega, kFactor);
+        ASSERT_TRUE(Ts);
+        EXPECT_NEAR(*Ts, first.value_or(*Ts), 2e-3 * *Ts) << "from the peak at " << omega;
+        first = *Ts;
     }
 }
 

@@ -3,9 +3,12 @@
 
 #include <cmath>
 #include <tuple>
+#include <vector>
 
+#include "engine/tuning/robust/known_start.h"
 #include "engine/tuning/robust/search.h"
 #include "tests/engine/tuning/best_known_design.h"
+#include "tests/engine/tuning/random_plants.h"
 
 namespace tunewright::test {
 namespace {
@@ -60,6 +63,33 @@ TEST(RobustSearch, TheCurvatureThatAPiHandsOnServesAPid) {
                                        {found.x[0], found.x[1], std::log(0.5)}, options, {});
     EXPECT_TRUE(next.converged);
     EXPECT_NEAR(next.log_cost, robust::log_cost(pid, point_of(best->controller), 1e-6), 1e-3);
+}
+
+// With a second member that is the same plant, the problem is the same, but its optimum is not known beforehand: the
+// whole search, with its scans, is the judge of the table of starts.
+TEST(RobustSearch, AKnownStartLeadsToTheOptimumOfTheWholeSearch) {
+    Random random(11);
+    for (int i = 0; i < 120; ++i) {
+        const double K = random.log_uniform(0.01, 100), T = random.log_uniform(0.1, 100);
+        const double L = T * random.log_uniform(std::exp(-2.99), std::exp(2.99));
+        const LinearPlant plant = *LinearPlant::make(Fopdt{.K = K, .T = T, .L = L});
+        robust::DesignProblem problem;
+        problem.plant = &plant;
+        problem.pid = !random.one_in(3);
+        if (problem.pid) problem.filter.Tf_over_Td = random.one_in(3) ? random.uniform(0.05, 0.3) : 0.1;
+        problem.limits.Ms = random.one_in(3) ? 1.4 : random.uniform(1.16, 2.4);
+        problem.limits.Mt = random.one_in(2) ? problem.limits.Ms : random.uniform(1.1, 2.4);
+        ASSERT_TRUE(robust::known_start(problem));
+        robust::DesignProblem whole = problem;
+        const std::vector<LinearPlant> same{plant};
+        whole.others = same;
+        ASSERT_FALSE(robust::known_start(whole));
+        const auto quick = robust::fast_search({problem, robust::reference_frequency(problem)}, problem, {});
+        const auto full = robust::fast_search({whole, robust::reference_frequency(whole)}, whole, {});
+        ASSERT_TRUE(quick && full);
+        EXPECT_NEAR(quick->log_cost, full->log_cost, 5e-5)
+            << "L/T " << L / T << ", Ms " << problem.limits.Ms << ", Mt " << problem.limits.Mt;
+    }
 }
 
 TEST(RobustSearch, FastIsWithinAThousandthOfTheBestKnown) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "api/check_service.h"
 #include "api/contract/controller.h"
 #include "api/contract/controller_record.h"
 #include "api/contract/plant/typed.h"
@@ -83,11 +84,16 @@ bool canonicalise_plants(Json& value, const RangeRequest& request) {
     return typed;
 }
 
+bool canonicalise_plants(Json&, const CheckRequest&) { return false; }
+
 void keep_decoded(PreparedJob& job, JobRequest&& request) {
     job.request = std::make_shared<const JobRequest>(std::move(request));
 }
 void keep_decoded(PreparedJob& job, RangeRequest&& request) {
     job.range = std::make_shared<const RangeRequest>(std::move(request));
+}
+void keep_decoded(PreparedJob& job, CheckRequest&& request) {
+    job.check = std::make_shared<const CheckRequest>(std::move(request));
 }
 
 /// `text` is the stored request unless it has a typed plant.
@@ -117,13 +123,14 @@ std::variant<PreparedJob, Problem> prepared_as(const Description<Request>& contr
 
 template <class Spelling>
 std::variant<PreparedJob, Problem> prepared(Json& value, const JobLimits& limits, const Spelling& text) {
+    if (is_check_request(value)) return prepared_as(check_request_contract(), value, limits, text);
     return is_range_request(value) ? prepared_as(range_request_contract(), value, limits, text)
                                    : prepared_as(job_contract(), value, limits, text);
 }
 
 /// Sets the default of a batch's entry, no traces; a value of the wrong type is left for the contract to refuse.
 void ask_for_no_traces(Json& request) {
-    if (!request.is_object()) return;
+    if (!request.is_object() || is_check_request(request)) return;
     if (is_range_request(request)) {
         if (!request.contains("runs")) request["runs"] = false;
         return;
@@ -217,6 +224,7 @@ std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const Jo
     if (auto* ready = std::get_if<PreparedJob>(&job)) {
         ready->request.reset();
         ready->range.reset();
+        ready->check.reset();
     }
     return job;
 }
@@ -240,6 +248,7 @@ std::variant<std::string, Problem> request_of_result(std::string_view result, co
 }
 
 JobOutcome run_job(const PreparedJob& job, const RunControl& control) {
+    if (job.check) return check_outcome(*job.check, job.request_hash, control);
     if (job.range) return range_outcome(*job.range, job.request_hash, control);
     return computed(*job.request, job.request_hash, control);
 }
@@ -248,6 +257,11 @@ JobOutcome run_job(const StoredRequest& stored, const RunControl& control) {
     const auto parsed = parse(stored.json);
     if (const auto* problem = std::get_if<Problem>(&parsed)) return failure(*problem);
     const Json& value = std::get<Json>(parsed);
+    if (is_check_request(value)) {
+        auto check = decode(value, check_request_contract());
+        if (const auto* problem = std::get_if<Problem>(&check)) return failure(*problem);
+        return check_outcome(std::get<CheckRequest>(std::move(check)), stored.hash, control);
+    }
     if (is_range_request(value)) {
         auto range = decode(value, range_request_contract());
         if (const auto* problem = std::get_if<Problem>(&range)) return failure(*problem);

@@ -17,6 +17,7 @@ namespace tunewright::api {
 
 struct JobRequest;
 struct RangeRequest;
+struct CheckRequest;
 
 /// A tuning request that has been read and found valid.
 struct PreparedJob {
@@ -28,9 +29,10 @@ struct PreparedJob {
     bool low_priority = false;
     std::optional<std::int64_t> not_before = {};  ///< start time, ms since 1970, UTC
     bool unique = false;                          ///< an earlier job with the same hash may answer
-    /// The decoded request for a run in this process: one of the two; both null for an entry of a batch.
+    /// The decoded request for a run in this process: one of the three; all null for an entry of a batch.
     std::shared_ptr<const JobRequest> request = {};
     std::shared_ptr<const RangeRequest> range = {};
+    std::shared_ptr<const CheckRequest> check = {};
 };
 
 /// A prepared request as stored; any process can run it from its text.

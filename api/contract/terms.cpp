@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "api/contract/check/check_request.h"
 #include "api/contract/range/range_request.h"
 #include "api/contract/request.h"
 #include "api/csv/time_stamp.h"
@@ -82,6 +83,7 @@ void add_terms(Description<Request>& description) {
 
 template void add_terms(Description<JobRequest>& description);
 template void add_terms(Description<RangeRequest>& description);
+template void add_terms(Description<CheckRequest>& description);
 
 std::optional<Problem> refuse_far(const std::optional<std::int64_t>& not_before) {
     using std::chrono::milliseconds;

@@ -3,6 +3,8 @@
 #include <set>
 #include <string>
 
+#include "api/contract/check/check_request.h"
+#include "api/contract/check/check_result.h"
 #include "api/contract/controller_record.h"
 #include "api/contract/plant/typed.h"
 #include "api/contract/preview.h"
@@ -86,6 +88,9 @@ std::string openapi_json() {
         design_answer_contract().schema(book);
         frontier_request_contract().schema(book);
         frontier_contract().schema(book);
+        check_request_contract().schema(book);
+        check_result_contract().schema(book);
+        check_answer_contract().schema(book);
         range_request_contract().schema(book);
         range_result_contract().schema(book);
         range_answer_contract().schema(book);

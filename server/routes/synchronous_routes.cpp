@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "api/check_service.h"
 #include "api/range_service.h"
 #include "api/registries.h"
 #include "api/service.h"
@@ -30,6 +31,7 @@ constexpr std::chrono::seconds kEvaluateTime{10};
 constexpr std::chrono::seconds kDesignTime{10};
 constexpr std::chrono::seconds kRangeTime{20};
 constexpr std::chrono::seconds kIdentifyTime{30};
+constexpr std::chrono::seconds kCheckTime{30};
 constexpr std::chrono::seconds kRelayTime{10};
 constexpr std::chrono::seconds kConversionTime{10};
 constexpr std::chrono::milliseconds kGonePollInterval{250};  // between checks for clients that have disconnected
@@ -181,6 +183,7 @@ void add_synchronous_routes(http::Router& router, ComputeSlots& turns, Timer& ti
     add("/v1/design", of_body(api::design_call), kDesignTime);
     add("/v1/frontier", of_body(api::frontier_call), kDesignTime);
     add("/v1/range", of_body(api::range_call), kRangeTime);
+    add("/v1/check", of_body(api::check_call), kCheckTime);
     add("/v1/identify", of_body(api::identify_call), kIdentifyTime);
     add("/v1/records/controller", of_body(api::controller_record_call), kIdentifyTime);
     add("/v1/records/preview", preview, kIdentifyTime, refuse_file_call);

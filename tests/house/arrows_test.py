@@ -25,8 +25,9 @@ ROOMS = {
         "identification": {"simulation", "loop", "plant", "controller", "numerics"},
         "evaluation": {"simulation", "loop", "plant", "controller", "numerics"},
         "tuning": {"evaluation", "reduction", "simulation", "loop", "plant", "controller", "numerics"},
+        "check": {"identification", "simulation", "loop", "plant", "controller", "numerics"},
         "range": {"tuning", "evaluation", "simulation", "loop", "plant", "controller", "numerics"},
-        "request": {"range", "evaluation", "tuning", "identification", "reduction", "simulation", "loop", "plant",
+        "request": {"check", "range", "evaluation", "tuning", "identification", "reduction", "simulation", "loop", "plant",
                     "controller", "numerics"},
     },
     "engine/tuning": {
@@ -61,7 +62,8 @@ ROOMS = {
         "shorthand": {"contract", "csv", "json"},
         "registries": {"outcome", "contract", "describe", "formula"},
         "range_service": {"outcome", "contract", "describe"},
-        "service": {"outcome", "outline", "range_service", "shorthand", "contract", "describe", "json"},
+        "check_service": {"outcome", "contract", "describe", "json"},
+        "service": {"outcome", "outline", "range_service", "check_service", "shorthand", "contract", "describe", "json"},
         "batch": {"service", "contract", "csv", "describe", "json"},
     },
     "server": {

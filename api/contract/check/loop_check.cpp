@@ -1,0 +1,307 @@
+#include "api/contract/check/loop_check.h"
+
+#include <cmath>
+
+#include "api/contract/result/evaluation.h"
+
+namespace tunewright::api {
+namespace {
+
+using namespace check;
+
+constexpr const char* kNotKnown = "The record does not tell.";
+
+Codec<double> answered() { return only_answered(number()); }
+
+template <class T>
+Codec<std::vector<T>> answered_list(const Description<T>& description) {
+    return list_of(answer(description));
+}
+
+const Description<RecordQuality>& quality_contract() {
+    static const auto description = [] {
+        using Q = RecordQuality;
+        Description<Q> d("CheckedRecord", "How good the record is. Shares are from 0 to 1.");
+        d.field("rows", &Q::rows, only_answered(integer(0, 1 << 30)), "Its rows.")
+            .field("sample_time", &Q::sample_time, answered(), "Median time from row to row.", {.unit = "time"})
+            .field("duration", &Q::duration, answered(), "From the first row to the last.", {.unit = "time"})
+            .field("missing", &Q::missing, answered(), "Share of rows without a usable measurement.")
+            .field("held", &Q::held, answered(), "Share of rows that repeat the measurement of the row before.")
+            .field("longest_gap", &Q::longest_gap, answered(), "Longest time without a measurement.", {.unit = "time"})
+            .field("noise", &Q::noise, answered(), "Standard deviation of the measurement from row to row.",
+                   {.unit = "y"})
+            .field("y_step", &Q::y_step, answered(), "Grid of the measurement; 0: none found.", {.unit = "y"})
+            .field("u_step", &Q::u_step, answered(), "Grid of the output; 0: none found.", {.unit = "u"})
+            .field("compressed", &Q::compressed, only_answered(boolean()),
+                   "True if the historian stored only some of the values.")
+            .field("enough", &Q::enough, only_answered(boolean()), "False: no diagnosis is possible.")
+            .field("remarks", &Q::remarks, list_of(answer(warning_contract())), "What is wrong with the record.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<ServiceShares>& service_contract() {
+    static const auto description = [] {
+        using S = ServiceShares;
+        Description<S> d("LoopService", "Shares of the time, 0 to 1.");
+        d.field("automatic", &S::automatic, figure(), "In automatic or cascade.")
+            .field("manual", &S::manual, figure(), "In manual.")
+            .field("saturated_low", &S::saturated_low, answered(), "Output at its lower limit.")
+            .field("saturated_high", &S::saturated_high, answered(), "Output at its upper limit.")
+            .field("output_still", &S::output_still, answered(), "Output at rest, away from its limits.")
+            .field("measurement_still", &S::measurement_still, answered(),
+                   "Measurement at rest while the output moves.")
+            .why_null(kNotKnown);
+        return d;
+    }();
+    return description;
+}
+
+const Description<Period>& period_contract() {
+    static const auto description = [] {
+        Description<Period> d("LoopPeriod", "An oscillation of the error.");
+        d.field("period", &Period::period, answered(), "Its period.", {.unit = "time"})
+            .field("period_error", &Period::period_error, answered(), "Standard error of the period.", {.unit = "time"})
+            .field("regularity", &Period::regularity, answered(),
+                   "Above 1 it is regular (Thornhill, Huang and Zhang 2003).")
+            .field("share", &Period::share, answered(), "Share of the error's variance, 0 to 1.")
+            .field("amplitude", &Period::amplitude, answered(), "Half of peak to peak.", {.unit = "y"});
+        return d;
+    }();
+    return description;
+}
+
+/// The members of the answer, `period` and `regularity`, are those of the strongest.
+const Description<Oscillation>& oscillation_contract() {
+    static const auto description = [] {
+        using O = Oscillation;
+        Description<O> d("LoopOscillation", "Regular oscillations of the error, the strongest first.");
+        const auto of_first = [](double Period::*member) {
+            return [member](const O& found, Writer& out) {
+                found.periods.empty() ? out.null() : out.number(found.periods.front().*member);
+            };
+        };
+        const auto nullable = [](SchemaBook&) { return Json{{"type", {"number", "null"}}}; };
+        d.field("found", &O::found, only_answered(boolean()), "True if there is one.")
+            .field("period", {}, of_first(&Period::period), nullable, "Period of the strongest; null: none.",
+                   {.unit = "time"})
+            .field("regularity", {}, of_first(&Period::regularity), nullable, "Its regularity; null: none.")
+            .field("periods", &O::periods, answered_list(period_contract()), "All of them.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<Evidence>& evidence_contract() {
+    static const auto description = [] {
+        using E = Evidence;
+        Description<E> d("CheckEvidence", "A figure that speaks for or against a cause.");
+        d.field("code", &E::code, words(), "For programs.")
+            .field("value", &E::value, answered(), "The figure.")
+            .field("limit", &E::limit, only_answered(maybe(number())), "The value at which it would turn.")
+            .field("detail", &E::detail, words(), "A sentence with the figure.");
+        return d;
+    }();
+    return description;
+}
+
+Codec<Confidence> confidence() {
+    using enum Confidence;
+    return only_answered(choice<Confidence>({{"sure", sure}, {"likely", likely}, {"open", open}}));
+}
+
+const Description<Cause>& cause_contract() {
+    static const auto description = [] {
+        Description<Cause> d("LoopCause", "Why the loop is as it is.");
+        d.field("verdict", &Cause::verdict, only_answered(check_verdict()), "The cause.")
+            .field("confidence", &Cause::confidence, confidence(), "open: the verdict is undetermined or insufficient-data.")
+            .field("evidence", &Cause::evidence, answered_list(evidence_contract()), "The strongest first.")
+            .field("alternatives", &Cause::alternatives, only_answered(list_of(check_verdict())),
+                   "Other causes that the record does not exclude, the likeliest first.")
+            .field("size", &Cause::size, figure(), "Of a sticking valve its dead band and stick, of a backlash its width.",
+                   {.unit = "u"})
+            .field("jump", &Cause::jump, figure(), "By which a sticking valve jumps when it breaks loose.", {.unit = "u"})
+            .field("why_open", &Cause::why_open,
+                   unless<std::string>(words(), [](const std::string& why) { return why.empty(); }),
+                   "Why the record does not tell the cause.")
+            .why_null("Only a sticking valve or a backlash has one.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<HarrisRange>& harris_contract() {
+    static const auto description = [] {
+        using H = HarrisRange;
+        Description<H> d("HarrisRange",
+                         "The variance that no controller can avoid over the variance of the error, for all dead times "
+                         "between the two delays; 1 is best. It is a range, not a grade.");
+        d.field("low", &H::low, answered(), "Its lower end.")
+            .field("high", &H::high, answered(), "Its upper end.")
+            .field(
+                "delays", {},
+                [](const H& range, Writer& out) {
+                    out.begin_array();
+                    for (const double delay : range.delays) out.number(delay);
+                    out.end_array();
+                },
+                numbers(2, 2).schema, "Shortest and longest delay.", {.unit = "time"});
+        return d;
+    }();
+    return description;
+}
+
+const Description<PerformanceFigures>& loop_performance_contract() {
+    static const auto description = [] {
+        using P = PerformanceFigures;
+        Description<P> d("LoopPerformance", "How much error and output move.");
+        d.field("harris", &P::harris, or_reason(answer(harris_contract())), "Against what a controller could do.")
+            .field("idle_index", &P::idle_index, figure(),
+                   "-1 to 1: above 0.4 sluggish, below -0.4 quick (Hägglund 1999).")
+            .field("variability", &P::variability, answered(), "Standard deviation of the error.", {.unit = "y"})
+            .field("mean_error", &P::mean_error, answered(), "Mean magnitude of the error.", {.unit = "y"})
+            .field("following", &P::following, figure(),
+                   "Variance of the error over that of the set point, where the set point moves.")
+            .field("travel", &P::travel, answered(), "Of the output, ranges an hour.")
+            .field("reversals", &P::reversals, answered(), "Of the output, an hour.")
+            .why_null(kNotKnown);
+        return d;
+    }();
+    return description;
+}
+
+const Description<Action>& action_contract() {
+    static const auto description = [] {
+        using enum Owner;
+        Description<Action> d("CheckAction", "What to do first.");
+        d.field("code", &Action::code, only_answered(check_action()), "For programs.")
+            .field("owner", &Action::owner,
+                   only_answered(choice<Owner>({{"nobody", nobody},
+                                                {"control", control},
+                                                {"instruments", instruments},
+                                                {"process", process},
+                                                {"operations", operations}})),
+                   "Whose work it is.")
+            .field("detail", &Action::detail, words(), "A sentence.");
+        return d;
+    }();
+    return description;
+}
+
+Codec<std::vector<float>> short_numbers() {
+    Codec<std::vector<float>> codec;
+    codec.read = [](const Json& value, std::vector<float>& target, Reader& reader) {
+        std::vector<double> read;
+        numbers(0, kShapePoints).read(value, read, reader);
+        target.assign(read.begin(), read.end());
+    };
+    codec.write = [](const std::vector<float>& values, Writer& out) {
+        out.begin_array();
+        for (const float value : values) out.number(std::round(1e3 * double(value)) / 1e3);
+        out.end_array();
+    };
+    codec.schema = numbers(0, kShapePoints).schema;
+    return codec;
+}
+
+const Description<Shape>& shape_contract() {
+    static const auto description = [] {
+        Description<Shape> d("LoopShape", "What the judgement of many loops needs of this one. Times in seconds.");
+        d.field("from", &Shape::from, number(), "First row.")
+            .field("to", &Shape::to, number(), "Last row.")
+            .field("dated", &Shape::dated, boolean(), "True: seconds since 1970; false: since t = 0.")
+            .field("period", &Shape::period, number(), "Of the strongest oscillation; 0: none.")
+            .field("spectrum", &Shape::spectrum, short_numbers(),
+                   "Share of the error's power in bands even in the logarithm of the period, 1 s to 100,000 s.")
+            .field("wave", &Shape::wave, short_numbers(), "The error's last periods, in standard deviations.")
+            .field("wave_from", &Shape::wave_from, number(), "Time of its first value.")
+            .field("wave_step", &Shape::wave_step, number(), "From value to value.")
+            .field("set_point", &Shape::set_point, short_numbers(), "Means of even stretches, in standard deviations.")
+            .field("output", &Shape::output, short_numbers(), "Means of even stretches, in standard deviations.")
+            .field(
+                "nonlinearity", [](const Json& value, Shape& shape, Reader&) { shape.nonlinearity = value.get<float>(); },
+                [](const Shape& shape, Writer& out) { out.number(double(shape.nonlinearity)); }, number().schema,
+                "How far the wave is from a linear one.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<Trend>& trend_contract() {
+    static const auto description = [] {
+        Description<Trend> d("LoopTrend", "The record as drawn.");
+        d.field("t", &Trend::t, times_trace(), "Times.", {.unit = "time"})
+            .field("y", &Trend::y, trace(), "Measurement.", {.unit = "y"})
+            .field("r", &Trend::r, unless<std::vector<double>>(trace(), [](const auto& r) { return r.empty(); }),
+                   "Set point.", {.unit = "y"})
+            .field("u", &Trend::u, trace(), "Output.", {.unit = "u"});
+        return d;
+    }();
+    return description;
+}
+
+const Description<Curve>& curve_contract() {
+    static const auto description = [] {
+        Description<Curve> d("CheckCurve", "A curve.");
+        d.field("x", &Curve::x, times_trace(), "Periods or lags.", {.unit = "time"})
+            .field("y", &Curve::y, trace(), "Shares of power, or correlations.");
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace
+
+Codec<Verdict> check_verdict() {
+    using enum Verdict;
+    return choice<Verdict>({{"healthy", healthy},
+                            {"stiction", stiction},
+                            {"backlash", backlash},
+                            {"tight", tight},
+                            {"sluggish", sluggish},
+                            {"external", external},
+                            {"saturation", saturation},
+                            {"quantised", quantised},
+                            {"manual", manual},
+                            {"frozen", frozen},
+                            {"undetermined", undetermined},
+                            {"insufficient-data", insufficient_data}});
+}
+
+Codec<ActionCode> check_action() {
+    using enum ActionCode;
+    return choice<ActionCode>({{"none", none},
+                               {"retune", retune},
+                               {"repair-valve", repair_valve},
+                               {"find-source", find_source},
+                               {"return-to-automatic", return_to_automatic},
+                               {"check-range", check_range},
+                               {"check-transmitter", check_transmitter},
+                               {"record-again", record_again},
+                               {"test", test}});
+}
+
+const Description<LoopCheck>& loop_check_contract() {
+    static const auto description = [] {
+        using L = LoopCheck;
+        Description<L> d("LoopCheck", "What a loop's record says about it.");
+        d.field("tag", &L::tag, words(), "Its name.")
+            .field("quality", &L::quality, answer(quality_contract()), "The record; it comes before every diagnosis.")
+            .field("service", &L::service, answer(service_contract()), "For what share of the time it was controlled.")
+            .field("oscillation", &L::oscillation, answer(oscillation_contract()), "Whether the error oscillates.")
+            .field("cause", &L::cause, answer(cause_contract()), "Why the loop is as it is.")
+            .field("performance", &L::performance, answer(loop_performance_contract()), "How much error and output move.")
+            .field("action", &L::action, answer(action_contract()), "What to do first.")
+            .field("weight", &L::weight, only_answered(maybe(number())), "As in the request.")
+            .field("trend", &L::trend, answer(trend_contract()), "The whole record, as extremes of even stretches.")
+            .field("excerpt", &L::excerpt, answer(trend_contract()), "Its last periods.")
+            .field("spectrum", &L::spectrum, answer(curve_contract()), "Share of the error's power over the period.")
+            .field("autocorrelation", &L::autocorrelation, answer(curve_contract()), "Of the error, over the lag.")
+            .field("shape", &L::shape, object(shape_contract()), "For the judgement of many loops together.");
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,14 @@
+// The answer about one checked loop. It is written, and read back for the judgement of a batch.
+#pragma once
+
+#include "api/describe/description.h"
+#include "engine/check/loop_check.h"
+
+namespace tunewright::api {
+
+const Description<check::LoopCheck>& loop_check_contract();
+
+Codec<check::Verdict> check_verdict();
+Codec<check::ActionCode> check_action();
+
+}  // namespace tunewright::api

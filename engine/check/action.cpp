@@ -1,0 +1,53 @@
+#include "engine/check/action.h"
+
+#include "engine/number_text.h"
+
+namespace tunewright::check {
+namespace {
+
+std::string valve_work(const LoopCheck& check, const char* what) {
+    std::string out = std::string("Have the valve and its positioner looked at: ") + what;
+    if (check.cause.size) out += " of about " + figure_text(*check.cause.size) + " of the output's unit";
+    return out + ". Do not tune before: settings only change the period of the cycle.";
+}
+
+}  // namespace
+
+Action action_for(const LoopCheck& check) {
+    using enum ActionCode;
+    switch (check.cause.verdict) {
+        case Verdict::healthy: return {none, Owner::nobody, "Nothing to do."};
+        case Verdict::stiction: return {repair_valve, Owner::instruments, valve_work(check, "it sticks, with a band")};
+        case Verdict::backlash:
+            return {repair_valve, Owner::instruments, valve_work(check, "its linkage has a backlash")};
+        case Verdict::tight:
+            return {retune, Owner::control, "Take gain back: the loop is close to its stability limit."};
+        case Verdict::sluggish:
+            return {retune, Owner::control, "Tune the loop: it removes disturbances more slowly than it could."};
+        case Verdict::external:
+            return {find_source, Owner::process,
+                    "Find the source of the disturbance: it comes from outside this loop. Look for a loop with the same "
+                    "period."};
+        case Verdict::saturation:
+            return {check_range, Owner::process,
+                    "The output is at its limit for part of the time, where nothing is controlled. Look for the reason "
+                    "in the process, or at the size of the valve."};
+        case Verdict::quantised:
+            return {check_transmitter, Owner::instruments,
+                    "The measurement comes in coarse steps. Look at the range of the transmitter, the converter and the "
+                    "historian."};
+        case Verdict::manual:
+            return {return_to_automatic, Owner::operations,
+                    "Ask why the loop is in manual, mend that, and return it to automatic."};
+        case Verdict::frozen:
+            return {check_transmitter, Owner::instruments,
+                    "The measurement stands still while the output moves. Look at the transmitter and its line."};
+        case Verdict::undetermined:
+            return {test, Owner::control, "A test tells more: put the loop in manual for some periods, or step it."};
+        case Verdict::insufficient_data:
+            return {record_again, Owner::control, "Record again, for longer or with raw values."};
+    }
+    return {};
+}
+
+}  // namespace tunewright::check

@@ -1,0 +1,80 @@
+#include "engine/check/loop_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/check/action.h"
+#include "engine/check/cause.h"
+#include "engine/check/drawing.h"
+#include "engine/check/movement.h"
+#include "engine/check/oscillation.h"
+#include "engine/check/record_quality.h"
+#include "engine/check/samples.h"
+#include "engine/check/service.h"
+#include "engine/check/shape.h"
+
+namespace tunewright::check {
+namespace {
+
+std::optional<Error> refused(const LoopQuestion& question) {
+    const Record& record = question.record;
+    const auto wrong = [&](const char* name, std::size_t length, bool required) -> std::optional<Error> {
+        if (length == record.t.size() || (!required && length == 0)) return std::nullopt;
+        return Error{ErrorKind::invalid_argument, std::string("record/") + name,
+                     std::string(name) + " has " + std::to_string(length) + " values and t " +
+                         std::to_string(record.t.size()) + "; they must have the same number."};
+    };
+    if (auto error = wrong("y", record.y.size(), true)) return error;
+    if (auto error = wrong("u", record.u.size(), true)) return error;
+    if (auto error = wrong("r", record.r.size(), false)) return error;
+    if (auto error = wrong("automatic", record.automatic.size(), false)) return error;
+    for (const auto& [name, range] : {std::pair{"range/pv", &question.y_range}, {"range/op", &question.u_range}})
+        if (*range && !((**range)[0] < (**range)[1]))
+            return Error{ErrorKind::invalid_argument, name,
+                         "The range is not [low, high] with low < high; give the lower end first."};
+    return std::nullopt;
+}
+
+}  // namespace
+
+Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_token& stop) {
+    if (auto error = refused(question)) return *error;
+    LoopCheck check;
+    check.tag = question.tag;
+    check.kind = question.kind;
+    check.weight = question.weight;
+    const Rows rows = rows_of(question.record);
+    const Samples samples = even_samples(rows);
+    check.quality = quality_of(rows, samples);
+    const auto u_range = output_range(question, samples);
+    check.service = service_of(samples, u_range);
+    if (!samples.y.empty()) {
+        check.performance = performance_of(samples, u_range, question);
+        check.trend = trend_of(samples);
+    }
+    if (check.quality.enough) {
+        const OscillationStudy study = study_oscillation(samples);
+        check.oscillation = study.found;
+        if (stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The check was stopped."};
+        check.cause = cause_of({question, samples, study, u_range, check.quality, check.service}, stop);
+        if (stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The check was stopped."};
+        draw_details(samples, study, check);
+        check.shape = shape_of(samples, study, question);
+    } else {
+        check.cause = insufficient(check.quality);
+    }
+    check.action = action_for(check);
+    return check;
+}
+
+LoopCheck unreadable_loop(std::string tag, std::string reason) {
+    LoopCheck check;
+    check.tag = std::move(tag);
+    check.quality.enough = false;
+    check.quality.remarks.push_back({"not-read", std::move(reason), WarningLevel::bad});
+    check.cause = insufficient(check.quality);
+    check.action = action_for(check);
+    return check;
+}
+
+}  // namespace tunewright::check

@@ -1,0 +1,188 @@
+#include "engine/check/oscillation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "engine/check/thresholds.h"
+#include "engine/numerics/fourier.h"
+#include "engine/numerics/statistics.h"
+
+namespace tunewright::check {
+namespace {
+
+using Spectrum = std::vector<std::complex<double>>;
+
+constexpr double kBandBelow = 0.55, kBandAbove = 1.6;  // of the peak's frequency: what belongs to an oscillation
+constexpr double kPeakWidth = 0.08;                    // of a frequency: power this close counts as one peak's
+constexpr double kHighest = 0.45;                      // cycles per row
+constexpr double kFewestCycles = 4;                    // in the record, of the slowest oscillation looked for
+constexpr int kCrossings = 12;                         // of the autocorrelation, hence eleven intervals
+constexpr std::size_t kMostPeriods = 3;
+constexpr std::size_t kSpectrumPoints = 160;
+
+/// Power over frequency of a window of the series, at twice as many frequencies as it has of its own.
+std::vector<double> power_of(const std::vector<double>& e) {
+    const std::size_t n = e.size();
+    std::vector<double> padded(quick_length(2 * n), 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double hann = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (double(i) + 0.5) / double(n));
+        padded[i] = hann * e[i];
+    }
+    const Spectrum X = half_spectrum(padded);
+    std::vector<double> power(X.size());
+    std::ranges::transform(X, power.begin(), [](const auto& value) { return std::norm(value); });
+    return power;
+}
+
+/// The series through the band about a frequency.
+struct Filtered {
+    std::vector<double> series;
+    double share = 0;  ///< of the power above the slowest oscillation that is looked for
+};
+
+class Search {
+public:
+    explicit Search(const std::vector<double>& error) : n_(error.size()), power_(power_of(error)) {
+        std::vector<double> padded(error);
+        padded.resize(quick_length(n_), 0.0);
+        length_ = padded.size();
+        X_ = half_spectrum(padded);
+        slowest_ = kFewestCycles / static_cast<double>(n_);
+        for (std::size_t k = 0; k < X_.size(); ++k)
+            if (frequency(k) >= slowest_) total_ += std::norm(X_[k]);
+    }
+
+    /// Cycles per row of the strongest peak, by the power within kPeakWidth; 0: there is no power.
+    double strongest() const {
+        std::vector<double> sum(power_.size() + 1, 0.0);
+        for (std::size_t k = 0; k < power_.size(); ++k) sum[k + 1] = sum[k] + power_[k];
+        const double per = 1 / static_cast<double>(2 * (power_.size() - 1));
+        const auto first = std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(slowest_ / per)));
+        const auto last = static_cast<std::size_t>(kHighest / per);
+        const auto least = static_cast<std::size_t>(1.5 / static_cast<double>(n_) / per) + 1;
+        double most = 0;
+        std::size_t best = 0;
+        for (std::size_t k = first; k < last; ++k) {
+            const auto half = std::max(least, static_cast<std::size_t>(kPeakWidth * static_cast<double>(k)));
+            const std::size_t from = k > half ? k - half : 1, to = std::min(k + half + 1, power_.size());
+            if (const double energy = sum[to] - sum[from]; energy > most) {
+                most = energy;
+                best = k;
+            }
+        }
+        if (best == 0) return 0;
+        const auto half = least + static_cast<std::size_t>(kPeakWidth * static_cast<double>(best));
+        const auto from = power_.begin() + static_cast<std::ptrdiff_t>(best > half ? best - half : 1);
+        const auto to = power_.begin() + static_cast<std::ptrdiff_t>(std::min(best + half + 1, power_.size()));
+        return per * static_cast<double>(std::max_element(from, to) - power_.begin());
+    }
+
+    Filtered band(double f) const {
+        Spectrum inside(X_.size());
+        double power = 0;
+        for (std::size_t k = 0; k < X_.size(); ++k) {
+            if (!in_band(frequency(k), f)) continue;
+            inside[k] = X_[k];
+            power += std::norm(X_[k]);
+        }
+        Filtered out{series_of(inside, length_), total_ > 0 ? power / total_ : 0};
+        out.series.resize(n_);
+        return out;
+    }
+
+    void remove(double f) {
+        for (std::size_t k = 0; k < X_.size(); ++k)
+            if (in_band(frequency(k), f)) X_[k] = 0;
+        const double per = 1 / static_cast<double>(2 * (power_.size() - 1));
+        for (std::size_t k = 0; k < power_.size(); ++k)
+            if (in_band(per * static_cast<double>(k), f)) power_[k] = 0;
+    }
+
+private:
+    static bool in_band(double f, double centre) { return f > kBandBelow * centre && f < kBandAbove * centre; }
+    double frequency(std::size_t k) const { return static_cast<double>(k) / static_cast<double>(length_); }
+
+    std::size_t n_, length_ = 0;
+    std::vector<double> power_;
+    Spectrum X_;
+    double slowest_ = 0, total_ = 0;
+};
+
+/// Where the values cross zero, in rows, at most `count` of them.
+std::vector<double> crossings(const std::vector<double>& values, std::size_t count) {
+    std::vector<double> at;
+    for (std::size_t i = 1; i < values.size() && at.size() < count; ++i)
+        if ((values[i - 1] > 0) != (values[i] > 0))
+            at.push_back(double(i - 1) + values[i - 1] / (values[i - 1] - values[i]));
+    return at;
+}
+
+/// Period and regularity T/(3 s) from the crossings of the band's autocorrelation, s the standard deviation of the
+/// periods that successive crossings give (Thornhill, Huang and Zhang 2003, Journal of Process Control 13, 91-100).
+Period measured(const Filtered& band, double f, double step) {
+    Period out{.period = step / f, .share = std::min(1.0, band.share)};
+    out.amplitude = std::sqrt(2.0) * deviation(band.series);
+    const auto longest = std::min(band.series.size() - 1, static_cast<std::size_t>(0.5 * (kCrossings + 2) / f));
+    const auto at = crossings(autocorrelation(band.series, longest), kCrossings);
+    if (at.size() < 5) return out;
+    std::vector<double> periods;
+    for (std::size_t i = 1; i < at.size(); ++i) periods.push_back(2 * (at[i] - at[i - 1]));
+    const double period = mean(periods), spread = deviation(periods);
+    out.period = step * period;
+    out.period_error = step * spread / std::sqrt(static_cast<double>(periods.size()));
+    out.regularity = std::min(kMostRegular, period / (3 * spread + 1e-9 * period));
+    return out;
+}
+
+/// The share of power in even steps of ln(period).
+Curve drawn_spectrum(const std::vector<double>& error, double step) {
+    const auto power = power_of(error);
+    Curve curve;
+    const double n = static_cast<double>(error.size());
+    const double shortest = std::log(2.0), longest = std::log(n / 2);
+    if (!(longest > shortest)) return curve;
+    std::vector<double> bins(kSpectrumPoints, 0.0);
+    double total = 0;
+    const double per = 1 / static_cast<double>(2 * (power.size() - 1));
+    for (std::size_t k = 1; k < power.size(); ++k) {
+        const double place = (-std::log(per * static_cast<double>(k)) - shortest) / (longest - shortest);
+        if (place < 0 || place >= 1) continue;
+        bins[static_cast<std::size_t>(place * kSpectrumPoints)] += power[k];
+        total += power[k];
+    }
+    for (std::size_t i = 0; i < bins.size() && total > 0; ++i) {
+        curve.x.push_back(step * std::exp(shortest + (longest - shortest) * (double(i) + 0.5) / kSpectrumPoints));
+        curve.y.push_back(bins[i] / total);
+    }
+    return curve;
+}
+
+}  // namespace
+
+OscillationStudy study_oscillation(const Samples& samples) {
+    OscillationStudy study;
+    study.error = samples.error();
+    const double centre = mean(study.error);
+    std::vector<double> e(study.error);
+    for (double& value : e) value -= centre;
+    study.autocorrelation = autocorrelation(e, e.size() / 2);
+    study.spectrum = drawn_spectrum(e, samples.step);
+    Search search(e);
+    while (study.found.periods.size() < kMostPeriods) {
+        const double f = search.strongest();
+        if (!(f > 0)) break;
+        const Period period = measured(search.band(f), f, samples.step);
+        if (period.share < kLeastShare) break;
+        if (period.regularity > kRegular) study.found.periods.push_back(period);
+        else if (study.found.periods.empty()) study.strongest = period;
+        search.remove(f);
+        if (++study.looked_at >= 2 * kMostPeriods) break;
+    }
+    study.found.found = !study.found.periods.empty();
+    if (study.found.found) study.strongest = study.found.periods.front();
+    return study;
+}
+
+}  // namespace tunewright::check

@@ -1,0 +1,23 @@
+// Whether the error oscillates, with which periods, and how regularly.
+#pragma once
+
+#include <vector>
+
+#include "engine/check/loop_check.h"
+#include "engine/check/samples.h"
+
+namespace tunewright::check {
+
+/// What further tests need beyond the periods themselves.
+struct OscillationStudy {
+    Oscillation found;
+    std::vector<double> error;            ///< set point minus measurement
+    std::vector<double> autocorrelation;  ///< of the error, from lag 0
+    Curve spectrum;                       ///< share of the error's power over period, time
+    Period strongest;                     ///< the first found one, else the strongest, which is not regular
+    std::size_t looked_at = 0;            ///< peaks of the spectrum
+};
+
+OscillationStudy study_oscillation(const Samples& samples);
+
+}  // namespace tunewright::check

@@ -1,0 +1,96 @@
+#include "engine/check/plant_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/check/clusters.h"
+
+namespace tunewright::check {
+namespace {
+
+constexpr double kSluggishGain = 0.5;  // of the mean error: what tuning a sluggish loop is known to save, about
+constexpr double kValveGain = 0.8;     // of the oscillation's share, which ends with its cause
+
+/// The share of the error that mending may remove.
+Figure share_of(const LoopCheck& check) {
+    const double oscillating = check.oscillation.found ? check.oscillation.periods.front().share : 0;
+    switch (check.cause.verdict) {
+        case Verdict::healthy: return 0.0;
+        case Verdict::stiction:
+        case Verdict::backlash:
+        case Verdict::tight: return kValveGain * (1 - std::sqrt(std::max(0.0, 1 - oscillating)));
+        case Verdict::sluggish: return kSluggishGain;
+        case Verdict::external:
+            return no_figure("The disturbance comes from outside: what this loop gains is known once its source is.");
+        case Verdict::saturation:
+        case Verdict::manual:
+        case Verdict::frozen:
+        case Verdict::quantised: return no_figure("What mending gains cannot be told from a record in this state.");
+        default: return no_figure("The cause is open.");
+    }
+}
+
+int effort_of(ActionCode code) {
+    switch (code) {
+        case ActionCode::none: return 0;
+        case ActionCode::retune:
+        case ActionCode::return_to_automatic: return 1;
+        case ActionCode::test:
+        case ActionCode::record_again: return 2;
+        default: return 3;
+    }
+}
+
+Rank rank_of(std::size_t index, const LoopCheck& check) {
+    Rank rank;
+    rank.loop = index;
+    rank.share = share_of(check);
+    rank.effort = effort_of(check.action.code);
+    if (!rank.share) {
+        rank.gain = rank.money = no_figure(rank.share.why);
+        return rank;
+    }
+    rank.gain = *rank.share * check.performance.mean_error;
+    rank.money = check.weight ? Figure(*check.weight * *rank.gain) : no_figure("The loop has no weight.");
+    return rank;
+}
+
+/// What a loop is first ordered by: loops out of service and sources of others, then by gain.
+int urgency(const LoopCheck& check, bool source) {
+    switch (check.cause.verdict) {
+        case Verdict::healthy: return 0;
+        case Verdict::insufficient_data:
+        case Verdict::undetermined: return 1;
+        case Verdict::external: return 2;
+        default: return source ? 4 : 3;
+    }
+}
+
+}  // namespace
+
+PlantCheck check_plant(std::span<const LoopCheck* const> loops, bool cluster) {
+    PlantCheck plant;
+    plant.cascades = cascades_of(loops);
+    if (cluster) plant.clusters = clusters_of(loops);
+    std::vector<bool> source(loops.size(), false);
+    for (std::size_t i = 0; i < loops.size(); ++i) plant.ranking.push_back(rank_of(i, *loops[i]));
+    for (const Cluster& found : plant.clusters) {
+        if (!found.source) continue;
+        source[*found.source] = true;
+        for (const std::size_t i : found.loops)
+            if (i != *found.source) plant.ranking[i].after = *found.source;
+    }
+    const auto before = [&](const Rank& a, const Rank& b) {
+        const LoopCheck &first = *loops[a.loop], &second = *loops[b.loop];
+        const int ua = urgency(first, source[a.loop]), ub = urgency(second, source[b.loop]);
+        if (ua != ub) return ua > ub;
+        if (a.money.has_value() != b.money.has_value()) return a.money.has_value();
+        if (a.money && *a.money != *b.money) return *a.money > *b.money;
+        return a.share.value_or(0) > b.share.value_or(0);
+    };
+    std::ranges::stable_sort(plant.ranking, before);
+    return plant;
+}
+
+}  // namespace tunewright::check

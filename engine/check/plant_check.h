@@ -1,0 +1,47 @@
+// What the checks of many loops say together: which oscillate as one, where that begins, which are cascades, and the
+// order in which mending them pays.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/check/loop_check.h"
+
+namespace tunewright::check {
+
+/// Loops that oscillate together.
+struct Cluster {
+    double period = 0;                 ///< s
+    std::vector<std::size_t> loops;    ///< the likely source first
+    std::optional<std::size_t> source; ///< empty: none stands out
+    std::string why;                   ///< one sentence: why that one, or why none
+};
+
+struct CascadePair {
+    std::size_t master = 0, slave = 0;
+};
+
+/// A loop's place in the work list.
+struct Rank {
+    std::size_t loop = 0;
+    Figure gain;         ///< decrease of the mean magnitude of the error that mending may bring, y
+    Figure share;        ///< the same as a share of the error, 0 to 1
+    Figure money;        ///< per hour, with the loop's weight
+    int effort = 0;      ///< 1: settings; 2: a test; 3: work on the plant
+    std::optional<std::size_t> after;  ///< a loop to mend first, because it disturbs this one
+};
+
+/// Loops by their index among the given ones.
+struct PlantCheck {
+    std::vector<Cluster> clusters;
+    std::vector<CascadePair> cascades;
+    std::vector<Rank> ranking;  ///< first the one to mend first; every loop once
+};
+
+/// `cluster` false: each loop is ranked on its own. Loops without a common time are compared by their spectra alone.
+PlantCheck check_plant(std::span<const LoopCheck* const> loops, bool cluster = true);
+
+}  // namespace tunewright::check

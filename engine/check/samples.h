@@ -1,0 +1,52 @@
+// The samples of a record in operation: in the order of time, on an even grid, without repair of what a check must see.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/identification/record/record.h"
+
+namespace tunewright::check {
+
+/// Every row of the record that has a time, in the order of time. A measurement or an output that is missing is NaN
+/// where no row before has one, else it is held and marked.
+struct Rows {
+    std::vector<double> t, y, u;
+    std::vector<double> r;          ///< empty: no set point
+    std::vector<char> automatic;    ///< empty: not recorded
+    std::vector<char> measured;     ///< 1: this row has a measurement of its own
+    double step = 0;                ///< the median time from row to row; 0: fewer than two rows
+};
+
+Rows rows_of(const Record& record);
+
+/// An even series: the longest part of the rows without a gap of more than kLongestGap steps. Shorter gaps keep the last
+/// values.
+struct Samples {
+    double start = 0, step = 1;  ///< time
+    std::vector<double> y, u;
+    std::vector<double> r;           ///< empty: no set point
+    std::vector<char> automatic;     ///< empty: not recorded
+
+    std::size_t size() const { return y.size(); }
+    double duration() const { return step * static_cast<double>(y.size()); }
+    double time(std::size_t i) const { return start + step * static_cast<double>(i); }
+    /// Set point minus measurement; without a set point the mean of the measurement minus it.
+    std::vector<double> error() const;
+};
+
+inline constexpr int kLongestGap = 20;  ///< steps
+
+Samples even_samples(const Rows& rows);
+
+/// A run of equal successive values: from `begin`, `length` of them.
+struct EqualRun {
+    std::size_t begin = 0, length = 0;
+};
+std::vector<EqualRun> equal_runs(std::span<const double> values);
+
+/// The mean of each `count` successive values; an incomplete last block is left out.
+std::vector<double> block_means(std::span<const double> values, std::size_t count);
+
+}  // namespace tunewright::check

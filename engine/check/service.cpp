@@ -1,0 +1,73 @@
+#include "engine/check/service.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/check/thresholds.h"
+
+namespace tunewright::check {
+namespace {
+
+double share(const std::vector<char>& marks) {
+    return marks.empty() ? 0 : static_cast<double>(std::ranges::count(marks, 1)) / static_cast<double>(marks.size());
+}
+
+std::size_t still_rows(std::size_t rows) {
+    return std::max(kStillRows, static_cast<std::size_t>(kStillShare * static_cast<double>(rows)));
+}
+
+double limit_share(const Samples& samples, double limit, double near) {
+    const auto at = std::ranges::count_if(samples.u, [&](double u) { return std::abs(u - limit) <= near; });
+    return static_cast<double>(at) / static_cast<double>(std::max<std::size_t>(1, samples.u.size()));
+}
+
+/// The share of samples in long rests of one value while the other one moves.
+double still_share(const std::vector<double>& still, const std::vector<double>& moving) {
+    std::size_t rows = 0;
+    for (const EqualRun& run : equal_runs(still)) {
+        if (run.length < still_rows(still.size())) continue;
+        const auto first = moving.begin() + static_cast<std::ptrdiff_t>(run.begin);
+        const auto [low, high] = std::minmax_element(first, first + static_cast<std::ptrdiff_t>(run.length));
+        if (*high > *low) rows += run.length;
+    }
+    return static_cast<double>(rows) / static_cast<double>(std::max<std::size_t>(1, still.size()));
+}
+
+}  // namespace
+
+std::array<double, 2> output_range(const LoopQuestion& question, const Samples& samples) {
+    if (question.u_range) return *question.u_range;
+    if (samples.u.empty()) return {0, 100};
+    const auto [low, high] = std::ranges::minmax(samples.u);
+    return {std::min(0.0, low), std::max(high > 1 ? 100.0 : 1.0, high)};
+}
+
+std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range) {
+    std::vector<char> held(samples.size(), 0);
+    const double near = kAtLimit * (u_range[1] - u_range[0]);
+    for (const EqualRun& run : equal_runs(samples.u)) {
+        const double u = samples.u[run.begin];
+        if (run.length < still_rows(samples.size()) || u <= u_range[0] + near || u >= u_range[1] - near) continue;
+        std::fill_n(held.begin() + static_cast<std::ptrdiff_t>(run.begin), run.length, 1);
+    }
+    return held;
+}
+
+ServiceShares service_of(const Samples& samples, const std::array<double, 2>& u_range) {
+    ServiceShares shares;
+    const double near = kAtLimit * (u_range[1] - u_range[0]);
+    shares.saturated_low = limit_share(samples, u_range[0], near);
+    shares.saturated_high = limit_share(samples, u_range[1], near);
+    shares.output_still = share(held_output(samples, u_range));
+    shares.measurement_still = still_share(samples.y, samples.u);
+    if (samples.automatic.empty()) {
+        shares.automatic = no_figure("The record has no column of the mode.");
+        shares.manual = no_figure("The record has no column of the mode.");
+    } else {
+        shares.automatic = share(samples.automatic);
+        shares.manual = 1 - *shares.automatic;
+    }
+    return shares;
+}
+
+}  // namespace tunewright::check

@@ -1,0 +1,19 @@
+// For what share of the time a loop was controlled, held, or at a limit.
+#pragma once
+
+#include <vector>
+
+#include "engine/check/loop_check.h"
+#include "engine/check/samples.h"
+
+namespace tunewright::check {
+
+/// 1 for each sample whose output rests for long, away from its limits: nobody controls there.
+std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range);
+
+ServiceShares service_of(const Samples& samples, const std::array<double, 2>& u_range);
+
+/// The range of the output: as given, else 0 to 100, or to 1 where no sample exceeds 1; widened to what was seen.
+std::array<double, 2> output_range(const LoopQuestion& question, const Samples& samples);
+
+}  // namespace tunewright::check

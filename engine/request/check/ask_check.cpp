@@ -1,0 +1,69 @@
+#include "engine/request/check/ask_check.h"
+
+#include <atomic>
+#include <mutex>
+#include <optional>
+
+namespace tunewright {
+namespace {
+
+/// Counts the loops that are done; its calls come from several threads.
+class LoopsProgress {
+public:
+    LoopsProgress(const RunControl& control, std::size_t loops) : control_(control), loops_(loops) {}
+
+    void one_done() {
+        const std::scoped_lock lock(mutex_);
+        ++done_;
+        if (!control_.progress) return;
+        Progress progress;
+        progress.fraction = static_cast<double>(done_) / static_cast<double>(loops_);
+        progress.stage = "check";
+        progress.message = std::to_string(done_) + " of " + std::to_string(loops_) + " loops checked.";
+        control_.progress(progress);
+    }
+
+private:
+    const RunControl& control_;
+    std::size_t loops_, done_ = 0;
+    std::mutex mutex_;
+};
+
+}  // namespace
+
+Expected<CheckResult> ask_check(const CheckQuestion& question, const RunControl& control) {
+    const std::size_t n = question.loops.size();
+    std::vector<std::optional<check::LoopCheck>> done(n);
+    std::vector<std::optional<Error>> failed(n);
+    LoopsProgress progress(control, n);
+    parallel_for(control.spread, static_cast<int>(n), [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        if (control.stop.stop_requested()) return;
+        auto found = check::check_loop(question.loops[at], control.stop);
+        if (found)
+            done[at] = std::move(*found);
+        else
+            failed[at] = found.error();
+        progress.one_done();
+    });
+    CheckResult result;
+    std::size_t reached = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (failed[i] && failed[i]->kind != ErrorKind::cancelled) {
+            failed[i]->where = "loops/" + std::to_string(i) + (failed[i]->where.empty() ? "" : "/" + failed[i]->where);
+            return *failed[i];
+        }
+        reached += done[i] ? 1 : 0;
+        result.loops.push_back(done[i] ? std::move(*done[i])
+                                       : check::unreadable_loop(question.loops[i].tag,
+                                                                "The check was stopped before this loop was reached."));
+    }
+    if (reached == 0 && n > 0) return Error{ErrorKind::cancelled, "", "The check was stopped."};
+    result.partial = reached < n;
+    std::vector<const check::LoopCheck*> all;
+    for (const auto& loop : result.loops) all.push_back(&loop);
+    result.plant = check::check_plant(all, question.cluster);
+    return result;
+}
+
+}  // namespace tunewright

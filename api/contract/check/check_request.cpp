@@ -110,7 +110,10 @@ const Description<CheckRequest>& check_request_contract() {
         add_labels(d);
         d.field("loops", &R::loops, list_of(object(loop_contract()), 1, kMaxCheckedLoops),
                 "The loops; many large ones are sent as a batch.", {.required = true})
-            .field("cluster", &R::cluster, boolean(), "Look for loops that oscillate together, and for the source.");
+            .field("cluster", &R::cluster, boolean(), "Look for loops that oscillate together, and for the source.")
+            .field("settings", &R::settings, boolean(),
+                   "Where tuning is the cause: look for new settings too, or say which test is missing. Some seconds a "
+                   "loop.");
         add_terms(d);
         d.refuse("record", "A check takes a record for each loop: loops [{\"tag\": \"FIC101\", \"record\": {...}}].")
             .refuse("tune", "A check designs nothing; its answer says for which loops tuning helps.")

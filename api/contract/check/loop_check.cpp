@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "api/contract/controller.h"
+#include "api/contract/plant/plant.h"
 #include "api/contract/result/evaluation.h"
 
 namespace tunewright::api {
@@ -189,6 +191,52 @@ const Description<Action>& action_contract() {
     return description;
 }
 
+const Description<TestPlan>& test_plan_contract() {
+    static const auto description = [] {
+        using P = TestPlan;
+        using enum P::Kind;
+        Description<P> d("CheckTest", "The test that shows the plant: steps up and down.");
+        d.field("kind", &P::kind,
+                only_answered(choice<P::Kind>({{"set-point-steps", set_point_steps}, {"output-steps", output_steps}})),
+                "In automatic, or in manual.")
+            .field("size", &P::size, answered(), "Of each step, in the unit of y or u.")
+            .field("steps", &P::steps, only_answered(integer(1, 100)), "How many.")
+            .field("hold", &P::hold, answered(), "How long each is held.", {.unit = "time"})
+            .field("duration", &P::duration, answered(), "Of the whole test.", {.unit = "time"})
+            .field("beyond_seen", &P::beyond_seen, only_answered(boolean()),
+                   "True: the size is more than the record's own range.")
+            .field("detail", &P::detail, words(), "A sentence.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<LoopCure>& cure_contract() {
+    static const auto description = [] {
+        using C = LoopCure;
+        Description<C> d("LoopCure", "From the cause to the settings.");
+        const auto pid = [&](const char* name, std::optional<IdealPid> C::*member, const char* sentence) {
+            d.field(
+                name, {},
+                [member](const C& cure, Writer& out) { controller_contract().write(Controller(*(cure.*member)), out); },
+                one_of(controller_contract()).schema, sentence, {},
+                [member](const C& cure) { return !(cure.*member); });
+        };
+        pid("settings", &C::settings, "The new settings; left out if the record does not suffice for them.");
+        pid("today", &C::today, "Today's settings, as the record shows them.");
+        d.field("plant", &C::plant, only_answered(maybe(one_of(plant_contract()))), "The identified plant.")
+            .field("worst_Ms", &C::worst_Ms, figure(), "The largest Ms on the plants that fit the record.")
+            .field("error_ratio", &C::error_ratio, figure(),
+                   "Mean magnitude of the error in the recorded time, with the new settings over that of the record.")
+            .field("test", &C::test, only_answered(maybe(answer(test_plan_contract()))),
+                   "The test to make; without settings.")
+            .field("detail", &C::detail, words(), "A sentence.")
+            .why_null("There are no settings.");
+        return d;
+    }();
+    return description;
+}
+
 Codec<std::vector<float>> short_numbers() {
     Codec<std::vector<float>> codec;
     codec.read = [](const Json& value, std::vector<float>& target, Reader& reader) {
@@ -282,9 +330,9 @@ Codec<ActionCode> check_action() {
                                {"test", test}});
 }
 
-const Description<LoopCheck>& loop_check_contract() {
+const Description<CheckedLoop>& loop_check_contract() {
     static const auto description = [] {
-        using L = LoopCheck;
+        using L = CheckedLoop;
         Description<L> d("LoopCheck", "What a loop's record says about it.");
         d.field("tag", &L::tag, words(), "Its name.")
             .field("quality", &L::quality, answer(quality_contract()), "The record; it comes before every diagnosis.")
@@ -293,6 +341,8 @@ const Description<LoopCheck>& loop_check_contract() {
             .field("cause", &L::cause, answer(cause_contract()), "Why the loop is as it is.")
             .field("performance", &L::performance, answer(loop_performance_contract()), "How much error and output move.")
             .field("action", &L::action, answer(action_contract()), "What to do first.")
+            .field("cure", &L::cure, only_answered(maybe(answer(cure_contract()))),
+                   "New settings, or the test that is missing, where tuning is the cause and settings were asked for.")
             .field("weight", &L::weight, only_answered(maybe(number())), "As in the request.")
             .field("trend", &L::trend, answer(trend_contract()), "The whole record, as extremes of even stretches.")
             .field("excerpt", &L::excerpt, answer(trend_contract()), "Its last periods.")

@@ -14,7 +14,7 @@ namespace {
 constexpr int kMostOrder = 100;
 constexpr double kStandardErrors = 2.6;  // hold the exact ratio on 96 of 100 random loops
 constexpr int kLongestResponse = 2000;   // samples
-constexpr double kSeen = 2;  // standard errors of a correlation of white noise
+constexpr double kSeen = 2;              // standard errors of a correlation of white noise
 
 /// Coefficients a of e_t = sum a_i e_{t-i} + w_t (Burg 1967: least squares forwards and backwards, always stable).
 std::vector<double> burg(const std::vector<double>& e, int order) {

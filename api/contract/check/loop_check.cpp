@@ -117,13 +117,16 @@ const Description<Cause>& cause_contract() {
     static const auto description = [] {
         Description<Cause> d("LoopCause", "Why the loop is as it is.");
         d.field("verdict", &Cause::verdict, only_answered(check_verdict()), "The cause.")
-            .field("confidence", &Cause::confidence, confidence(), "open: the verdict is undetermined or insufficient-data.")
+            .field("confidence", &Cause::confidence, confidence(),
+                   "open: the verdict is undetermined or insufficient-data.")
             .field("evidence", &Cause::evidence, answered_list(evidence_contract()), "The strongest first.")
             .field("alternatives", &Cause::alternatives, only_answered(list_of(check_verdict())),
                    "Other causes that the record does not exclude, the likeliest first.")
-            .field("size", &Cause::size, figure(), "Of a sticking valve its dead band and stick, of a backlash its width.",
+            .field("size", &Cause::size, figure(),
+                   "Of a sticking valve its dead band and stick, of a backlash its width.", {.unit = "u"})
+            .field("jump", &Cause::jump, figure(), "By which a sticking valve jumps when it breaks loose.",
                    {.unit = "u"})
-            .field("jump", &Cause::jump, figure(), "By which a sticking valve jumps when it breaks loose.", {.unit = "u"})
+            .field("period", &Cause::period, figure(), "Of the cycle that this cause makes.", {.unit = "time"})
             .field("why_open", &Cause::why_open,
                    unless<std::string>(words(), [](const std::string& why) { return why.empty(); }),
                    "Why the record does not tell the cause.")
@@ -141,14 +144,13 @@ const Description<HarrisRange>& harris_contract() {
                          "between the two delays; 1 is best. It is a range, not a grade.");
         d.field("low", &H::low, answered(), "Its lower end.")
             .field("high", &H::high, answered(), "Its upper end.")
-            .field(
-                "delays", {},
-                [](const H& range, Writer& out) {
-                    out.begin_array();
-                    for (const double delay : range.delays) out.number(delay);
-                    out.end_array();
-                },
-                numbers(2, 2).schema, "Shortest and longest delay.", {.unit = "time"});
+            .field("delays", {},
+                   [](const H& range, Writer& out) {
+                       out.begin_array();
+                       for (const double delay : range.delays) out.number(delay);
+                       out.end_array();
+                   },
+                   numbers(2, 2).schema, "Shortest and longest delay.", {.unit = "time"});
         return d;
     }();
     return description;
@@ -268,7 +270,8 @@ const Description<Shape>& shape_contract() {
             .field("set_point", &Shape::set_point, short_numbers(), "Means of even stretches, in standard deviations.")
             .field("output", &Shape::output, short_numbers(), "Means of even stretches, in standard deviations.")
             .field(
-                "nonlinearity", [](const Json& value, Shape& shape, Reader&) { shape.nonlinearity = value.get<float>(); },
+                "nonlinearity",
+                [](const Json& value, Shape& shape, Reader&) { shape.nonlinearity = value.get<float>(); },
                 [](const Shape& shape, Writer& out) { out.number(double(shape.nonlinearity)); }, number().schema,
                 "How far the wave is from a linear one.");
         return d;
@@ -339,7 +342,8 @@ const Description<CheckedLoop>& loop_check_contract() {
             .field("service", &L::service, answer(service_contract()), "For what share of the time it was controlled.")
             .field("oscillation", &L::oscillation, answer(oscillation_contract()), "Whether the error oscillates.")
             .field("cause", &L::cause, answer(cause_contract()), "Why the loop is as it is.")
-            .field("performance", &L::performance, answer(loop_performance_contract()), "How much error and output move.")
+            .field("performance", &L::performance, answer(loop_performance_contract()),
+                   "How much error and output move.")
             .field("action", &L::action, answer(action_contract()), "What to do first.")
             .field("cure", &L::cure, only_answered(maybe(answer(cure_contract()))),
                    "New settings, or the test that is missing, where tuning is the cause and settings were asked for.")

@@ -44,8 +44,9 @@ LoopCure with_settings(const TuningResult& result, const TuningEntry& entry, std
         cure.error_ratio = entry.replay->IAE_ratio;
     else
         cure.error_ratio = no_figure(entry.replay ? reason_of(*entry.replay->refused) : "The record has no set point.");
-    cure.detail = "The record shows the plant: with the new settings Ms stays within its limit on every plant that fits "
-                  "the record.";
+    cure.detail =
+        "The record shows the plant: with the new settings Ms stays within its limit on every plant that fits "
+        "the record.";
     if (cure.error_ratio)
         cure.detail += " In the recorded time the mean error would have been " + figure_text(*cure.error_ratio) +
                        " times as large.";

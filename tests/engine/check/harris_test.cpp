@@ -1,5 +1,5 @@
-// The index against loops whose minimum variance is known exactly: the error is an impulse response that is known, driven
-// by white noise.
+// The index against loops whose minimum variance is known exactly: the error is an impulse response that is known,
+// driven by white noise.
 #include "engine/check/harris.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,8 @@ KnownLoop drawn(std::uint64_t seed) {
             x = a * x + (1 - a) * K * u[i];
             error[i] = -(x + load);
             integral += gain * error[i] / Ti;
-            if (i + static_cast<std::size_t>(delay) < u.size()) u[i + static_cast<std::size_t>(delay)] = gain * error[i] + integral;
+            if (i + static_cast<std::size_t>(delay) < u.size())
+                u[i + static_cast<std::size_t>(delay)] = gain * error[i] + integral;
         }
         return error;
     };

@@ -89,7 +89,8 @@ private:
         peak_ = by_output ? output_ : of_error_;
         other_ = by_output ? of_error_ : output_;
         same_ = of_error_.period > 0 && std::abs(output_.period / of_error_.period - 1) < kSamePeriod;
-        line_ = same_ ? std::min(output_.line, of_error_.line) : 0;
+        drifts_ = std::min(output_.spread, of_error_.spread) >= kDrifts;
+        line_ = same_ && !drifts_ ? std::min(output_.line, of_error_.line) : 0;
         candidates_ = {{peak_.period, peak_.line_period, line_}};
         if (!(peak_.regularity > kClearlyRegular && peak_.share > kClearShare)) {
             for (const Peak& more : {other_, strongest_peak(std::span(q_.samples.u).subspan(skip), kSlowTilt),
@@ -172,7 +173,7 @@ private:
     }
 
     std::optional<Cause> by_dead_band() {
-        const auto fit = fit_hysteresis(q_.samples.y, *bank_, peak_.period);
+        const auto fit = fit_hysteresis(q_.samples.y, q_.samples.r, *bank_, peak_.period);
         const bool line = line_ >= kLine && peak_.cycles >= 8;
         if (!fit || fit->plant_gain * sign_ <= 0 || line || fit->turns < 2) return std::nullopt;
         const bool clear = fit->explained >= kDeadBandExplained && fit->gain >= kDeadBandGain &&
@@ -202,7 +203,7 @@ private:
             return out;
         }
         if (peak_.regularity >= kResonant && peak_.persistence >= kPersistent && peak_.cycles >= kCyclesOfResonance &&
-            line_ < kLine) {
+            drifts_) {
             add("resonance", peak_.persistence, kPersistent,
                 "After three periods the oscillation still has a correlation of " + figure_text(peak_.persistence) +
                     " with itself, its phase drifts, and no valve explains it: the loop itself hardly damps it.");
@@ -301,7 +302,7 @@ private:
     const std::stop_token& stop_;
     std::vector<double> error_, measurement_;
     Peak output_, of_error_, peak_, other_;
-    bool same_ = false;
+    bool same_ = false, drifts_ = false;
     double line_ = 0, sign_ = 1;
     std::vector<PeriodCandidate> candidates_;
     LoopLaw law_;

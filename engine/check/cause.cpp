@@ -7,6 +7,7 @@
 #include "engine/check/hysteresis.h"
 #include "engine/check/loop_law.h"
 #include "engine/check/loop_speed.h"
+#include "engine/check/set_point_response.h"
 #include "engine/check/thresholds.h"
 #include "engine/check/valve_fit.h"
 #include "engine/identification/record/series.h"
@@ -42,6 +43,7 @@ public:
         if (auto found = by_valve()) return *found;
         if (auto found = by_dead_band()) return *found;
         if (auto found = by_oscillation()) return *found;
+        if (auto found = by_set_point()) return *found;
         if (auto found = by_what_is_missing()) return *found;
         return by_speed();
     }
@@ -256,6 +258,21 @@ private:
         return double(free) / double(r.size());
     }
 
+    /// Moves of the set point show by themselves how quick the loop is.
+    std::optional<Cause> by_set_point() {
+        const auto response = set_point_response(q_.samples);
+        if (!response || response->dead_time < 2 * q_.samples.step || response->noise > kClearResponse)
+            return std::nullopt;
+        const double ratio = response->rise / response->dead_time;
+        add("set-point-response", ratio, kSluggishRise,
+            "After " + std::to_string(response->moves) + " moves of the set point the measurement needs " +
+                figure_text(response->rise) + " to 63 %, " + figure_text(ratio) +
+                " times the time until it begins; a loop tuned for its dead time needs 1 to 2 times.");
+        if (ratio < kSluggishRise) return std::nullopt;
+        return cause(Verdict::sluggish, response->moves > 1 && ratio > 1.5 * kSluggishRise ? Confidence::sure
+                                                                                          : Confidence::likely);
+    }
+
     std::optional<Cause> by_what_is_missing() {
         const int found = crossings();
         if (found < kFewestCrossings)
@@ -263,6 +280,8 @@ private:
                             " times: the record is short against this loop. Record for several times as long.",
                         {Verdict::sluggish, Verdict::stiction});
         const double free = free_of_moves();
+        if (std::ranges::any_of(evidence_, [](const Evidence& e) { return e.code == "set-point-response"; }))
+            return cause(Verdict::healthy, Confidence::likely);
         const bool moves = !q_.samples.r.empty() && deviation(q_.samples.r) > 1.5 * deviation(error_);
         if (free < kFreeOfMoves && moves)
             return open("Only " + percent(free) +

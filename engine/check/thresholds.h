@@ -45,6 +45,8 @@ inline constexpr double kSureValveGain = 0.12, kSureValveStrength = 60;
 inline constexpr int kFewestCrossings = 6;                ///< of the set point by block means beyond the noise
 inline constexpr double kFreeOfMoves = 0.65;              ///< share of rows that a set-point move does not reach
 inline constexpr double kMoveReach = 10;                  ///< integral times behind a set-point move
+inline constexpr double kClearResponse = 0.15;  ///< noise of the mean response to set-point moves, of the move
+inline constexpr double kSluggishRise = 3.5;    ///< rise over dead time: 1 to 2 with SIMC, 5 at eight times its time constant
 inline constexpr double kKnownLaw = 0.9;                  ///< of the output's moves explained by a PI law
 inline constexpr double kSlow = 0.9, kPerhapsSlow = 0.5;  ///< likelihood of a sluggish loop
 

@@ -128,7 +128,8 @@ std::optional<HysteresisFit> fit_hysteresis(std::span<const double> measurement,
     const auto rows = std::span(bank.output()).first(used);
     const auto [low, high] = std::ranges::minmax(rows);
     HysteresisFit fit;
-    fit.gain = std::log((linear.square + 1e-300) / (best.square + 1e-300));
+    const double floor = 1e-12 * variance;
+    fit.gain = std::log((std::max(0.0, linear.square) + floor) / (std::max(0.0, best.square) + floor));
     fit.explained = 1 - best.square / variance;
     fit.explained_without = 1 - linear.square / variance;
     fit.band = valve.band;

@@ -20,7 +20,7 @@ using Series = std::vector<double>;
 
 constexpr std::array<double, 16> kDeadTimes = {0.25, 0.5, 1, 1.5, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22, 28, 36};  // rows
 constexpr double kRowsPerTi = 80;
-constexpr std::size_t kFewestRows = 400, kMostRows = 3000;
+constexpr std::size_t kFewestRows = 400, kMostRows = 2500;
 constexpr std::size_t kSkipped = 8;  // first rows, whose past is unknown
 constexpr int kIterations = 12, kDampings = 8;
 constexpr double kConverged = 0.01;              // of the robust cost
@@ -335,13 +335,16 @@ LoopSpeed judged(const std::vector<Candidate>& best, const std::vector<double>& 
         if (!(pace[i] > 0.5 * kLeastPace && pace[i] < kMostPace)) weight[i] = 0;
     }
     LoopSpeed speed;
-    const double by_dead_time = slow + quick > 1e-9 ? slow / (slow + quick) : 0.5;
+    speed.by_dead_time = slow + quick > 1e-9 ? slow / (slow + quick) : 0.5;
     speed.pace = weighted_mean(weight, pace);
     speed.dead_time = weighted_mean(weight, dead);
     speed.crossover_Ti = weighted_mean(weight, crossover) * terms.Ti;
     const double odds =
         std::clamp(std::pow(kUsualCrossoverTi / std::max(speed.crossover_Ti, 1e-9), 2), kLeastOdds, kMostOdds);
-    speed.slow = by_dead_time < 1 ? by_dead_time * odds / (by_dead_time * odds + 1 - by_dead_time) : 1;
+    const double likelihood = speed.by_dead_time;
+    speed.slow = likelihood < 1 ? likelihood * odds / (likelihood * odds + 1 - likelihood) : 1;
+    speed.information = std::ranges::max(cost) - least;
+    speed.forward = double(std::ranges::count_if(pace, [](double value) { return value > 0; })) / double(count);
     speed.load_steps = int(std::ranges::min_element(best, {}, &Candidate::penalised)->at.size());
     speed.resolution = terms.row;
     return speed;

@@ -8,7 +8,10 @@
 namespace tunewright::check {
 
 struct LoopSpeed {
-    double slow = 0.5;     ///< likelihood that the loop is slower than its dead time asks, 0 to 1
+    double slow = 0.5;          ///< likelihood that the loop is slower than its dead time asks, 0 to 1
+    double by_dead_time = 0.5;  ///< the same by the dead time alone
+    double information = 0;     ///< how much the dead times on the grid differ in likelihood, in logarithms
+    double forward = 0;         ///< share of the dead times at which the plant's gain has the right sign
     double pace = 0;       ///< crossover frequency times dead time: 0.5 by SIMC, 0.19 at four times its time constant
     double dead_time = 0;  ///< time
     double crossover_Ti = 0;  ///< crossover frequency times integral time

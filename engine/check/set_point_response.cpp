@@ -10,9 +10,9 @@
 namespace tunewright::check {
 namespace {
 
-constexpr double kLeastMove = 4;          // standard deviations of the noise
-constexpr std::size_t kBefore = 10;       // rows at rest before a move
-constexpr std::size_t kLeastAfter = 30;   // rows
+constexpr double kLeastMove = 4;         // standard deviations of the noise
+constexpr std::size_t kBefore = 10;      // rows at rest before a move
+constexpr std::size_t kLeastAfter = 30;  // rows
 constexpr double kBegun = 0.05, kRisen = 0.632;
 
 struct Move {
@@ -31,7 +31,8 @@ std::vector<Move> moves_of(const std::vector<double>& r, double least) {
     std::size_t before = 0;
     std::vector<Move> alone;
     for (const Move& move : moves) {
-        if (std::abs(move.size) > least && move.after >= kLeastAfter && move.at >= before + kBefore) alone.push_back(move);
+        if (std::abs(move.size) > least && move.after >= kLeastAfter && move.at >= before + kBefore)
+            alone.push_back(move);
         before = move.at;
     }
     return alone;

@@ -77,23 +77,27 @@ TEST(LoopCheck, AStickingValveIsFoundWithItsSize) {
 
 TEST(LoopCheck, CausesOfSimulatedLoops) {
     using enum Verdict;
-    const std::map<std::string, std::pair<std::vector<Verdict>, std::function<void(LoopSetUp&, test::Random&)>>> kinds = {
-        {"healthy", {{healthy}, [](LoopSetUp&, test::Random&) {}}},
-        {"tight",
-         {{tight},
-          [](LoopSetUp& s, test::Random& random) {
-              s.Ti = std::min(s.plant.T, 4 * (1 + s.slowness) * s.plant.L);
-              s.Kp = ultimate_gain(s.plant, s.Ti, s.step) / random.uniform(1.02, 1.08);
-              s.noise *= 0.3;
-          }}},
-        {"external", {{external}, [](LoopSetUp& s, test::Random& random) {
-                          s.sine = random.uniform(2, 5);
-                          s.sine_period = std::min(s.plant.T, 4 * (1 + s.slowness) * s.plant.L) * random.uniform(1.5, 5);
-                      }}},
-        {"quantised", {{quantised}, [](LoopSetUp& s, test::Random&) { s.y_grid = 2 * (s.noise + 0.2 * s.plant.K * s.load); }}},
-        {"manual", {{manual}, [](LoopSetUp& s, test::Random&) { s.manual_from = 0.4; }}},
-        {"saturation", {{saturation}, [](LoopSetUp& s, test::Random&) { s.bias = -60; }}},
-    };
+    const std::map<std::string, std::pair<std::vector<Verdict>, std::function<void(LoopSetUp&, test::Random&)>>> kinds =
+        {
+            {"healthy", {{healthy}, [](LoopSetUp&, test::Random&) {}}},
+            {"tight",
+             {{tight},
+              [](LoopSetUp& s, test::Random& random) {
+                  s.Ti = std::min(s.plant.T, 4 * (1 + s.slowness) * s.plant.L);
+                  s.Kp = ultimate_gain(s.plant, s.Ti, s.step) / random.uniform(1.02, 1.08);
+                  s.noise *= 0.3;
+              }}},
+            {"external",
+             {{external},
+              [](LoopSetUp& s, test::Random& random) {
+                  s.sine = random.uniform(2, 5);
+                  s.sine_period = std::min(s.plant.T, 4 * (1 + s.slowness) * s.plant.L) * random.uniform(1.5, 5);
+              }}},
+            {"quantised",
+             {{quantised}, [](LoopSetUp& s, test::Random&) { s.y_grid = 2 * (s.noise + 0.2 * s.plant.K * s.load); }}},
+            {"manual", {{manual}, [](LoopSetUp& s, test::Random&) { s.manual_from = 0.4; }}},
+            {"saturation", {{saturation}, [](LoopSetUp& s, test::Random&) { s.bias = -60; }}},
+        };
     Tally all;
     for (const auto& [name, kind] : kinds) {
         const Tally found = tally(kind.first, 8, 40, kind.second);

@@ -1,5 +1,5 @@
-// Records of a simulated loop in operation whose cause is known: a plant with dead time, a PI controller, a load, noise,
-// and one thing that is wrong.
+// Records of a simulated loop in operation whose cause is known: a plant with dead time, a PI controller, a load,
+// noise, and one thing that is wrong.
 #pragma once
 
 #include <cmath>
@@ -13,11 +13,12 @@
 
 namespace tunewright::check {
 
-/// Choudhury, Thornhill and Shah 2005, Control Engineering Practice 13, 641: two parameters, the band S and the jump J. It
-/// shares nothing with the models that the check fits.
+/// Choudhury, Thornhill and Shah 2005, Control Engineering Practice 13, 641: two parameters, the band S and the jump J.
+/// It shares nothing with the models that the check fits.
 class StickingValve {
 public:
-    StickingValve(double band, double jump, double at) : S_(band), J_(jump), position_(at), before_(at), stuck_at_(at) {}
+    StickingValve(double band, double jump, double at)
+        : S_(band), J_(jump), position_(at), before_(at), stuck_at_(at) {}
 
     double operator()(double u) {
         const double move = u - before_;
@@ -42,19 +43,19 @@ private:
 
 struct LoopSetUp {
     Fopdt plant{.K = 1, .T = 20, .L = 4};
-    double Kp = 0, Ti = 0;           ///< 0: by SIMC with tau_c = `slowness` times the dead time
+    double Kp = 0, Ti = 0;  ///< 0: by SIMC with tau_c = `slowness` times the dead time
     double slowness = 1.5;
-    double band = 0, jump = 0;       ///< of a sticking valve, % of u
-    double load = 0.2;               ///< standard deviation of a drifting load, % of u
-    double noise = 0.03;             ///< of the measurement
+    double band = 0, jump = 0;         ///< of a sticking valve, % of u
+    double load = 0.2;                 ///< standard deviation of a drifting load, % of u
+    double noise = 0.03;               ///< of the measurement
     double sine = 0, sine_period = 0;  ///< a disturbance from outside, % of u
-    double bias = 3;                 ///< a step of the load early in the record, % of u
+    double bias = 3;                   ///< a step of the load early in the record, % of u
     int set_point_moves = 0;
     double set_point_size = 2;
     double y_grid = 0.001, u_grid = 0.01;
     int rows = 3000;
     double step = 1;
-    double manual_from = 2;          ///< share of the record from which nobody controls
+    double manual_from = 2;  ///< share of the record from which nobody controls
 };
 
 inline double normal(test::Random& random) {
@@ -105,7 +106,8 @@ inline Record simulated(const LoopSetUp& s, std::uint64_t seed, const std::vecto
 inline double ultimate_gain(const Fopdt& plant, double Ti, double step) {
     double before = 0;
     for (double w = 1e-3 / plant.L; w < std::numbers::pi / step; w *= 1.001) {
-        const double phase = -std::atan(w * plant.T) - w * (plant.L + 0.5 * step) - std::numbers::pi / 2 + std::atan(w * Ti);
+        const double phase =
+            -std::atan(w * plant.T) - w * (plant.L + 0.5 * step) - std::numbers::pi / 2 + std::atan(w * Ti);
         if (before > -std::numbers::pi && phase <= -std::numbers::pi)
             return std::hypot(1, w * plant.T) / plant.K / std::hypot(1, 1 / (w * Ti));
         before = phase;

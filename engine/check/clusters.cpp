@@ -12,14 +12,14 @@
 namespace tunewright::check {
 namespace {
 
-constexpr double kSamePeriod = 0.05;       // relative
+constexpr double kSamePeriod = 0.04;       // relative
 constexpr double kSameWave = 0.7;          // of the correlation at the best lag, in each part
 constexpr double kSamePhase = 0.1;         // of the period
-constexpr std::size_t kParts = 3;          // of the common time
+constexpr std::size_t kParts = 6;          // of the common time
 constexpr std::size_t kFewestPoints = 96;  // of the common time
 constexpr double kSameSpectrum = 0.85;     // cosine of the powers, for records without a common time
 constexpr double kSlave = 0.99;            // correlation of a set point and an output
-constexpr std::size_t kPast = 4;           // values of the wave, a third of a period
+constexpr std::size_t kPast = 4;           // values of the wave, a half of a period
 constexpr double kClearLead = 0.1;         // in ln of the residual's square, over all others
 constexpr double kNoMaker = 0.5;           // the same: a loop without a cause of its own is not the source
 
@@ -36,12 +36,12 @@ struct Overlap {
     std::size_t points = 0;
 };
 
-/// The correlation of b shifted by `lag` with a, over the part `third` of the time that both have.
-Overlap correlation(const Shape& a, const Shape& b, double lag, int third) {
+/// The correlation of b shifted by `lag` with a, over the part `part` of the time that both have.
+Overlap correlation(const Shape& a, const Shape& b, double lag, int part) {
     double aa = 0, bb = 0, ab = 0;
     Overlap out{.lag = lag};
-    const std::size_t from = a.wave.size() * std::size_t(third) / kParts,
-                      to = a.wave.size() * std::size_t(third + 1) / kParts;
+    const std::size_t from = a.wave.size() * std::size_t(part) / kParts,
+                      to = a.wave.size() * std::size_t(part + 1) / kParts;
     for (std::size_t i = from; i < to; ++i) {
         const float other = at(b, a.wave_from + a.wave_step * static_cast<double>(i) + lag);
         if (std::isnan(other)) continue;
@@ -54,10 +54,10 @@ Overlap correlation(const Shape& a, const Shape& b, double lag, int third) {
     return out;
 }
 
-Overlap best_lag(const Shape& a, const Shape& b, double period, int third) {
+Overlap best_lag(const Shape& a, const Shape& b, double period, int part) {
     Overlap best;
     for (double lag = -0.5 * period; lag < 0.5 * period; lag += period / 24) {
-        const Overlap here = correlation(a, b, lag, third);
+        const Overlap here = correlation(a, b, lag, part);
         if (here.points >= kFewestPoints / kParts && here.correlation > best.correlation) best = here;
     }
     return best;
@@ -68,15 +68,15 @@ Overlap best_lag(const Shape& a, const Shape& b, double period, int third) {
 bool same_wave(const Shape& a, const Shape& b, double period) {
     std::optional<double> first;
     int known = 0;
-    for (int third = 0; third < int(kParts); ++third) {
-        const Overlap best = best_lag(a, b, period, third);
+    for (int part = 0; part < int(kParts); ++part) {
+        const Overlap best = best_lag(a, b, period, part);
         if (best.points == 0) continue;
         ++known;
         if (best.correlation < kSameWave) return false;
         if (!first) first = best.lag;
         if (std::abs(std::remainder(best.lag - *first, period)) > kSamePhase * period) return false;
     }
-    return known >= 2;
+    return known >= 3;
 }
 
 double cosine(const std::vector<float>& a, const std::vector<float>& b) {

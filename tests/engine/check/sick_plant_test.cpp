@@ -106,10 +106,6 @@ TEST(SickPlant, TheCausesAreRight) {
                         (plant[i].cause == Verdict::stiction && cause.verdict == Verdict::backlash);
         right[plant[i].cause] += ok ? 1 : 0;
         sure_and_wrong += !ok && cause.confidence == Confidence::sure ? 1 : 0;
-        if (!ok)
-            for (const auto& e : cause.evidence)
-                std::printf("%s %d %d: %s %g %s\n", plant[i].question.tag.c_str(), int(cause.verdict),
-                            int(cause.confidence), e.code.c_str(), e.value, e.detail.c_str());
     }
     EXPECT_GE(right[Verdict::stiction], 9);
     EXPECT_GE(right[Verdict::sluggish], 9);

@@ -51,6 +51,7 @@ private:
     enum class Code { unknown, bytes, utf16_little, utf16_big };
 
     bool feed_known(std::string_view bytes, const Take& take);
+    bool feed_bytes(std::string_view bytes, const Take& take);
     void keep(std::string_view bytes);
     bool end_line(const Take& take);
 

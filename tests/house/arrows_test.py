@@ -53,6 +53,7 @@ ROOMS = {
         "describe": {"json"},
         "csv": {"describe", "json"},
         "contract": {"csv", "describe", "formula", "json"},
+        "historian": {"csv", "describe", "json"},
         "chosen_entry": {"csv", "json"},
         "code": {"chosen_entry", "contract", "csv", "describe", "json"},
         "report": {"chosen_entry", "contract", "embed", "json"},
@@ -64,7 +65,7 @@ ROOMS = {
         "range_service": {"outcome", "contract", "describe"},
         "check_service": {"outcome", "contract", "describe", "json"},
         "service": {"outcome", "outline", "range_service", "check_service", "shorthand", "contract", "describe", "json"},
-        "batch": {"service", "contract", "csv", "describe", "json"},
+        "batch": {"service", "contract", "historian", "csv", "describe", "json"},
     },
     "server": {
         "top": set(),

@@ -5,8 +5,7 @@
 #include <limits>
 
 #include "api/csv/cell.h"
-#include "api/historian/loop_rows.h"
-#include "api/historian/value_cells.h"
+#include "api/historian/values/value_cells.h"
 
 namespace tunewright::api {
 namespace {
@@ -54,8 +53,10 @@ void JoinedLoops::add(const std::string& file, LoopsReader& reader) {
 
 void JoinedLoops::join(Part& part, const std::string& file, TaggedLoop loop) {
     TaggedLoop& whole = part.loop;
-    if (whole.fault && !loop.fault) std::swap(whole, loop), whole.notes.push_back(part.file + " was left out: " + *loop.fault);
-    else if (loop.fault && !whole.fault) whole.notes.push_back(file + " was left out: " + *loop.fault);
+    if (whole.fault && !loop.fault)
+        std::swap(whole, loop), whole.notes.push_back(part.file + " was left out: " + *loop.fault);
+    else if (loop.fault && !whole.fault)
+        whole.notes.push_back(file + " was left out: " + *loop.fault);
     if (whole.fault || loop.fault) return;
     if (!whole.epoch || !loop.epoch || !(seconds_ > 0))
         return set_fault(whole, whole.tag + " is in " + part.file + " and in " + file +

@@ -59,7 +59,8 @@ std::string rows_text(const TaggedLoop& loop, double zero) {
 void write_columns(const TaggedLoop& loop, Writer& out) {
     out.key("columns").begin_object();
     int number = 0;
-    for (const auto& [role, there] : {std::pair{"t", true}, {"r", !loop.r.empty()}, {"y", true}, {"u", true}, {"mode", !loop.mode.empty()}}) {
+    for (const auto& [role, there] :
+         {std::pair{"t", true}, {"r", !loop.r.empty()}, {"y", true}, {"u", true}, {"mode", !loop.mode.empty()}}) {
         ++number;
         if (there) out.key(role).integer(number);
     }
@@ -73,7 +74,8 @@ std::string iso_time(double seconds, bool utc) {
     const auto millis = std::chrono::milliseconds(std::llround(seconds * kMillisecondsPerSecond));
     const auto day = std::chrono::floor<std::chrono::days>(std::chrono::sys_time<std::chrono::milliseconds>(millis));
     const std::chrono::year_month_day date(day);
-    const std::chrono::hh_mm_ss clock(millis - std::chrono::duration_cast<std::chrono::milliseconds>(day.time_since_epoch()));
+    const std::chrono::hh_mm_ss clock(millis -
+                                      std::chrono::duration_cast<std::chrono::milliseconds>(day.time_since_epoch()));
     std::array<char, 40> text;
     std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%03d", static_cast<int>(date.year()),
                   static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "api/csv/columns/column_profile.h"
+#include "api/historian/tags/tag_lines.h"
 
 namespace tunewright::api {
 namespace {
@@ -35,7 +36,8 @@ std::optional<Problem> LoopsReader::line(int number, std::string_view text) {
 }
 
 std::optional<Problem> LoopsReader::open() {
-    const CsvLayout layout = find_layout(head_, {});
+    CsvLayout layout = find_layout(head_, {});
+    begin_below_tag_headings(head_, layout);
     auto table = open_table(head_, layout, options_, notes_);
     if (auto* problem = std::get_if<Problem>(&table)) return std::move(*problem);
     table_ = std::get<std::unique_ptr<LoopTable>>(std::move(table));
@@ -66,7 +68,8 @@ std::optional<Problem> LoopsReader::finish() {
     if (!table_)
         if (auto problem = open()) return problem;
     if (table_->rows() == 0 && wide_lines_ > 0)
-        return unreadable_loops("Line " + std::to_string(first_wide_line_) + " has more cells than headings. Numbers with "
+        return unreadable_loops("Line " + std::to_string(first_wide_line_) +
+                                " has more cells than headings. Numbers with "
                                 "a decimal comma need ; or tab as separator, or quotes.");
     if (table_->rows() == 0)
         return unreadable_loops("No line has a time that can be read; line " + std::to_string(first_line_) +

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "api/historian/loop_table.h"
+#include "api/historian/layouts/loop_table.h"
 
 namespace tunewright::api {
 
@@ -31,8 +31,8 @@ class LoopsReader {
 public:
     explicit LoopsReader(LoopsOptions options) : options_(std::move(options)) {}
 
-    /// Reads the next line, UTF-8 and without its end; `number` counts from 1. 422 if the file cannot be read or has too
-    /// many values; nothing may be read after that. A loop that cannot be read is a fault of that loop.
+    /// Reads the next line, UTF-8 and without its end; `number` counts from 1. 422 if the file cannot be read or has
+    /// too many values; nothing may be read after that. A loop that cannot be read is a fault of that loop.
     std::optional<Problem> line(int number, std::string_view text);
     /// 422 if the file has no loop.
     std::optional<Problem> finish();

@@ -25,8 +25,8 @@ constexpr std::string_view kMilliseconds[] = {"millitm", "millisecond", "millise
 
 class LongFinder {
 public:
-    LongFinder(std::string_view text, const CsvLayout& layout)
-        : text_(text), layout_(layout), profiles_(profiles(text, layout)) {
+    LongFinder(std::string_view text, const CsvLayout& layout, bool one_tag)
+        : text_(text), layout_(layout), one_tag_(one_tag), profiles_(profiles(text, layout)) {
         for (std::size_t i = 0; i < profiles_.size(); ++i)
             headings_.push_back(split_heading(i < layout.headings.size() ? layout.headings[i] : ""));
     }
@@ -56,7 +56,8 @@ private:
     bool is_tag(std::size_t i) const {
         const ColumnProfile& p = profiles_[i];
         const bool number = headings_[i].name == "tagindex" || headings_[i].name == "tagid";
-        return (p.text_changes > 0 && p.texts >= p.numbers + p.stamps) || (number && p.changes > 0);
+        const bool words = p.text_changes > 0 || (one_tag_ && p.texts > 0);
+        return (words && p.texts >= p.numbers + p.stamps) || (number && p.changes > 0);
     }
 
     bool find_time(LongColumns& out) const {
@@ -124,6 +125,7 @@ private:
 
     std::string_view text_;
     const CsvLayout& layout_;
+    bool one_tag_;
     std::vector<ColumnProfile> profiles_;
     std::vector<Heading> headings_;
 };
@@ -155,14 +157,14 @@ std::vector<std::size_t> varying(std::string_view text, const CsvLayout& layout,
 
 }  // namespace
 
-std::optional<LongColumns> find_long_columns(std::string_view text, const CsvLayout& layout) {
+std::optional<LongColumns> find_long_columns(std::string_view text, const CsvLayout& layout, bool one_tag) {
     constexpr std::size_t kMinWidth = 3;
     if (layout.data_line == 0 || layout.width < kMinWidth) return std::nullopt;
-    auto found = LongFinder(text, layout).find();
+    auto found = LongFinder(text, layout, one_tag).find();
     if (!found) return std::nullopt;
-    found->tags = varying(text, layout, std::move(found->tags));
-    found->numbers_tags = !layout.headings.empty() && is_one_of(split_heading(layout.headings[found->tags.front()]).name,
-                                                                {"tagindex", "tagid"});
+    if (!one_tag) found->tags = varying(text, layout, std::move(found->tags));
+    found->numbers_tags = !layout.headings.empty() &&
+                          is_one_of(split_heading(layout.headings[found->tags.front()]).name, {"tagindex", "tagid"});
     return found;
 }
 
@@ -192,5 +194,7 @@ std::string long_time(const std::vector<std::string_view>& cells, const LongColu
 }
 
 bool is_tag_heading(std::string_view name) { return is_one_of(name, kTagNames); }
+
+bool is_value_heading(std::string_view name) { return is_one_of(name, kValueNames); }
 
 }  // namespace tunewright::api

@@ -51,8 +51,8 @@ public:
 /// 3. a line for each tag and time (long_values.h);
 /// 4. one loop in columns.
 ///
-/// 422 with the reason if the file has none of these layouts. Adds its findings to `notes`. `head` and `layout` need not
-/// outlive the table.
+/// 422 with the reason if the file has none of these layouts. Adds its findings to `notes`. `head` and `layout` need
+/// not outlive the table.
 std::variant<std::unique_ptr<LoopTable>, Problem> open_table(std::string_view head, const CsvLayout& layout,
                                                              const LoopsOptions& options,
                                                              std::vector<std::string>& notes);

@@ -1,4 +1,4 @@
-#include "api/historian/value_quality.h"
+#include "api/historian/values/value_quality.h"
 
 #include <algorithm>
 #include <cctype>
@@ -22,12 +22,13 @@ bool is_opc_da(double code) { return code >= kGoodOpcDa && code <= kMaxOpcDa; }
 }  // namespace
 
 bool is_bad_quality(std::string_view word) {
-    static constexpr std::string_view kBad[] = {"bad",          "uncertain", "questionable", "poor",     "invalid",
-                                                "unreliable",   "schlecht",  "unsicher",     "mauvais",  "incertain",
-                                                "malo",         "mala",      "incierto",     "slecht",   "ung\xC3\xBCltig",
-                                                "substituted",  "suspect",   "not"};
+    static constexpr std::string_view kBad[] = {
+        "bad",      "uncertain", "questionable",    "poor",        "invalid", "unreliable",
+        "schlecht", "unsicher",  "mauvais",         "incertain",   "malo",    "mala",
+        "incierto", "slecht",    "ung\xC3\xBCltig", "substituted", "suspect", "not"};
     std::size_t length = 0;
-    while (length < word.size() && (std::isalpha(static_cast<unsigned char>(word[length])) || (word[length] & 0x80))) ++length;
+    while (length < word.size() && (std::isalpha(static_cast<unsigned char>(word[length])) || (word[length] & 0x80)))
+        ++length;
     if (length == 0) return false;
     return is_one_of(lower_case(word.substr(0, length)), kBad);
 }

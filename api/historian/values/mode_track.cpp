@@ -1,4 +1,4 @@
-#include "api/historian/mode_track.h"
+#include "api/historian/values/mode_track.h"
 
 #include <algorithm>
 

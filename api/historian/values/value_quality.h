@@ -5,9 +5,10 @@
 
 namespace tunewright::api {
 
-/// Reads cells of quality in the order of a file. Words: good, bad, uncertain, questionable and their like. Codes: those
-/// of OPC DA (192 and more good, 64 to 127 uncertain, below 64 bad) and of OPC UA (0 good, from 0x40000000 on uncertain
-/// or bad). 0 is bad only if a file also has codes of OPC DA; a file with 0 and 1 alone does not say which is good.
+/// Reads cells of quality in the order of a file. Words: good, bad, uncertain, questionable and their like. Codes:
+/// those of OPC DA (192 and more good, 64 to 127 uncertain, below 64 bad) and of OPC UA (0 good, from 0x40000000 on
+/// uncertain or bad). 0 is bad only if a file also has codes of OPC DA; a file with 0 and 1 alone does not say which is
+/// good.
 class ValueQuality {
 public:
     /// Learns the kind of codes from a cell.

@@ -1,6 +1,6 @@
-#include "api/historian/table_head.h"
+#include "api/historian/layouts/table_head.h"
 
-#include "api/historian/loop_table.h"
+#include "api/historian/layouts/loop_table.h"
 
 namespace tunewright::api {
 
@@ -30,18 +30,6 @@ CsvOptions csv_options(const LoopsOptions& options) {
     out.time_unit = options.time_unit;
     out.time_unit_given = options.time_unit_given;
     return out;
-}
-
-std::variant<TagClock, std::string> open_clock(const TableHead& head, std::size_t column,
-                                               std::optional<std::size_t> clock, const LoopsOptions& options) {
-    DetectedColumns columns;
-    columns.at[kTimeRole] = column;
-    columns.clock = clock;
-    std::vector<CsvFault> faults;
-    const CsvOptions csv = csv_options(options);
-    TimeColumn times(head.text, head.layout, columns, head.columns[column], csv, faults);
-    if (!faults.empty()) return faults.front().message;
-    return TagClock(std::move(times), seconds_per(options.time_unit).value_or(0));
 }
 
 }  // namespace tunewright::api

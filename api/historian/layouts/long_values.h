@@ -5,8 +5,8 @@
 #include <variant>
 
 #include "api/csv/shape/long_columns.h"
-#include "api/historian/loop_table.h"
-#include "api/historian/table_head.h"
+#include "api/historian/layouts/loop_table.h"
+#include "api/historian/layouts/table_head.h"
 
 namespace tunewright::api {
 

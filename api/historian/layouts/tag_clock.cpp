@@ -1,4 +1,4 @@
-#include "api/historian/tag_clock.h"
+#include "api/historian/layouts/tag_clock.h"
 
 #include <cmath>
 
@@ -21,6 +21,18 @@ bool TagClock::read(std::string_view cell, std::string_view clock, int line, Fil
     constexpr double kStepsPerSecond = 1e6;
     if (times_.stamps() && seconds_ > 0) t = std::round(t * seconds_ * kStepsPerSecond) / kStepsPerSecond / seconds_;
     return true;
+}
+
+std::variant<TagClock, std::string> open_clock(const TableHead& head, std::size_t column,
+                                               std::optional<std::size_t> clock, const LoopsOptions& options) {
+    DetectedColumns columns;
+    columns.at[kTimeRole] = column;
+    columns.clock = clock;
+    std::vector<CsvFault> faults;
+    const CsvOptions csv = csv_options(options);
+    TimeColumn times(head.text, head.layout, columns, head.columns[column], csv, faults);
+    if (!faults.empty()) return faults.front().message;
+    return TagClock(std::move(times), seconds_per(options.time_unit).value_or(0));
 }
 
 }  // namespace tunewright::api

@@ -1,9 +1,9 @@
-#include "api/historian/value_cells.h"
+#include "api/historian/values/value_cells.h"
 
 #include <cmath>
 
 #include "api/csv/columns/column_facts.h"
-#include "api/historian/value_quality.h"
+#include "api/historian/values/value_quality.h"
 
 namespace tunewright::api {
 namespace {

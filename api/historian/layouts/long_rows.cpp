@@ -1,4 +1,4 @@
-#include "api/historian/long_rows.h"
+#include "api/historian/layouts/long_rows.h"
 
 #include <algorithm>
 #include <deque>
@@ -7,9 +7,9 @@
 #include "api/csv/columns/column_facts.h"
 #include "api/csv/columns/heading_words.h"
 #include "api/csv/shape/long_columns.h"
-#include "api/historian/loop_rows.h"
-#include "api/historian/mode_track.h"
-#include "api/historian/tag_index.h"
+#include "api/historian/layouts/tag_clock.h"
+#include "api/historian/tags/tag_index.h"
+#include "api/historian/values/mode_track.h"
 
 namespace tunewright::api {
 namespace {
@@ -68,7 +68,8 @@ public:
         loop.ys.push_back(loop.y.read(cell(cells, parts.at[kOutputRole]), is_bad(cells, parts.y_quality)));
         loop.us.push_back(loop.u.read(cell(cells, parts.at[kInputRole]), is_bad(cells, parts.u_quality)));
         numbers_ += 3;
-        if (parts.at[kReferenceRole]) loop.rs.push_back(loop.r.read(cell(cells, parts.at[kReferenceRole]), false)), ++numbers_;
+        if (parts.at[kReferenceRole])
+            loop.rs.push_back(loop.r.read(cell(cells, parts.at[kReferenceRole]), false)), ++numbers_;
         if (!parts.at[kModeRole]) return;
         loop.mode.see(cell(cells, parts.at[kModeRole]));
         loop.modes.push_back(loop.mode.now());
@@ -109,7 +110,8 @@ private:
 
     void describe(const LoopStore& loop, TaggedLoop& out) const {
         out.bad = loop.y.bad() + loop.u.bad();
-        for (const auto& [cells, role] : {std::pair{&loop.y, kOutputRole}, {&loop.u, kInputRole}, {&loop.r, kReferenceRole}})
+        for (const auto& [cells, role] :
+             {std::pair{&loop.y, kOutputRole}, {&loop.u, kInputRole}, {&loop.r, kReferenceRole}})
             if (auto note = cells->unread_note(names_[role]); !note.empty()) out.notes.push_back(std::move(note));
         if (columns_.parts.at[kModeRole]) take_mode_words(loop.mode, names_[kModeRole], out);
     }
@@ -130,7 +132,8 @@ private:
 }  // namespace
 
 std::optional<LoopRowColumns> find_loop_rows(const TableHead& head) {
-    static constexpr std::string_view kLoopNames[] = {"loop", "loop name", "loop tag", "controller", "regler", "boucle"};
+    static constexpr std::string_view kLoopNames[] = {"loop",       "loop name", "loop tag",
+                                                      "controller", "regler",    "boucle"};
     std::vector<std::string> parts = head.layout.headings;
     LoopRowColumns out;
     bool found = false;

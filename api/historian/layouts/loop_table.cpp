@@ -1,15 +1,15 @@
-#include "api/historian/loop_table.h"
+#include "api/historian/layouts/loop_table.h"
 
 #include <utility>
 
 #include "api/csv/record_notes.h"
-#include "api/csv/shape/long_columns.h"
 #include "api/csv/text.h"
-#include "api/historian/long_rows.h"
-#include "api/historian/long_values.h"
-#include "api/historian/loop_tags.h"
-#include "api/historian/table_head.h"
-#include "api/historian/wide_table.h"
+#include "api/historian/layouts/long_rows.h"
+#include "api/historian/layouts/long_values.h"
+#include "api/historian/layouts/table_head.h"
+#include "api/historian/layouts/wide_table.h"
+#include "api/historian/tags/loop_tags.h"
+#include "api/historian/tags/tag_lines.h"
 
 namespace tunewright::api {
 
@@ -30,8 +30,9 @@ std::variant<std::unique_ptr<LoopTable>, Problem> open_table(std::string_view he
         return unreadable_loops(no_data_sentence(layout, text.substr(0, text.find_first_of("\r\n"))));
     }
     if (layout.pairs)
-        return unreadable_loops("The lines name their values, as in a log of one loop. Export a table with a column for "
-                                "each tag, or a line for each tag and time.");
+        return unreadable_loops(
+            "The lines name their values, as in a log of one loop. Export a table with a column for "
+            "each tag, or a line for each tag and time.");
     const TableHead first(head, layout);
     GroupedTags groups = group_tags(layout.headings);
     const auto note_partial = [&] {
@@ -40,7 +41,7 @@ std::variant<std::unique_ptr<LoopTable>, Problem> open_table(std::string_view he
     if (groups.loops.size() > 1) note_partial();
     if (groups.loops.size() > 1) return open_wide_table(first, std::move(groups.loops), options);
     if (const auto columns = find_loop_rows(first)) return open_long_rows(first, *columns, options);
-    if (const auto columns = find_long_columns(head, layout)) return open_long_values(first, *columns, options);
+    if (const auto columns = find_tag_lines(head, layout)) return open_long_values(first, *columns, options);
     if (groups.loops.empty() || groups.loops.front().name.empty()) return open_single_table(first, options);
     note_partial();
     return open_wide_table(first, std::move(groups.loops), options);

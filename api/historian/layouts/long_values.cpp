@@ -1,12 +1,13 @@
-#include "api/historian/long_values.h"
+#include "api/historian/layouts/long_values.h"
 
 #include <deque>
 #include <utility>
 
-#include "api/historian/loop_rows.h"
-#include "api/historian/loop_tags.h"
-#include "api/historian/mode_track.h"
-#include "api/historian/tag_index.h"
+#include "api/historian/layouts/tag_clock.h"
+#include "api/historian/tags/loop_tags.h"
+#include "api/historian/tags/tag_index.h"
+#include "api/historian/values/joined_tags.h"
+#include "api/historian/values/mode_track.h"
 
 namespace tunewright::api {
 namespace {
@@ -25,7 +26,8 @@ public:
     LongValues(const TableHead& head, LongColumns columns, TagClock clock)
         : columns_(std::move(columns)), clock_(std::move(clock)), sign_(head.layout.sign) {
         for (std::size_t i = 0; i < head.layout.headings.size(); ++i)
-            if (i != columns_.value && i != columns_.time && split_tag(head.layout.headings[i]).quality) quality_at_ = i;
+            if (i != columns_.value && i != columns_.time && split_tag(head.layout.headings[i]).quality)
+                quality_at_ = i;
         if (quality_at_) quality_ = head.quality({*quality_at_});
     }
 
@@ -144,10 +146,10 @@ private:
             if (!loop.at[role]) continue;
             const ValueCells& cells = stores_[*loop.at[role]]->cells;
             if (role != kReferenceRole) out.bad += cells.bad();
-            if (auto note = cells.unread_note(tag_name(loop, role)); !note.empty()) out.notes.push_back(std::move(note));
+            if (auto note = cells.unread_note(tag_name(loop, role)); !note.empty())
+                out.notes.push_back(std::move(note));
         }
-        if (loop.at[kModeRole])
-            take_mode_words(*stores_[*loop.at[kModeRole]]->mode, tag_name(loop, kModeRole), out);
+        if (loop.at[kModeRole]) take_mode_words(*stores_[*loop.at[kModeRole]]->mode, tag_name(loop, kModeRole), out);
     }
 
     const std::string& tag_name(const LoopTags& loop, ColumnRole role) const { return index_.tags()[*loop.at[role]]; }

@@ -1,4 +1,4 @@
-#include "api/historian/loop_tags.h"
+#include "api/historian/tags/loop_tags.h"
 
 #include <algorithm>
 #include <cctype>
@@ -99,9 +99,11 @@ std::optional<NamedRole> role_of_last_word(std::vector<std::string> words) {
         return std::nullopt;
     }
     if (is_auxiliary(last)) return std::nullopt;
+    const Heading own = split_heading(words.back());
     for (const ColumnRole role : {kOutputRole, kInputRole}) {
-        const auto found = match(last, role);
-        if (found && found->level <= 2) return NamedRole{role, before, word_place(words.back(), role).value_or(found->order)};
+        const auto found = match(own, role);
+        if (found && found->level <= 2)
+            return NamedRole{role, before, word_place(words.back(), role).value_or(found->order)};
     }
     return role_of_letter(words);
 }
@@ -141,8 +143,9 @@ std::string_view without_unit(std::string_view text) {
 
 TagName split_tag(std::string_view tag) {
     TagName out;
-    std::string text = with_point(without_unit(tag));
+    std::string text(without_unit(tag));
     out.quality = take_quality(text);
+    text = with_point(text);
     Heading heading = split_heading(text);
     if (heading.words.empty()) return out;
     auto found = role_at_end(heading);
@@ -234,9 +237,9 @@ private:
 
     const std::vector<std::string>& tags_;
     std::vector<LoopTags> loops_;
-    std::vector<int> orders_;                                    ///< of each tag
+    std::vector<int> orders_;                                  ///< of each tag
     std::vector<std::array<std::string, kRoleCount>> doubts_;  ///< of each group and role: its tag is ambiguous
-    std::unordered_map<std::string, std::size_t> places_;  ///< index in loops_ by key
+    std::unordered_map<std::string, std::size_t> places_;      ///< index in loops_ by key
 };
 
 }  // namespace

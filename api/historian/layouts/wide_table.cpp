@@ -1,4 +1,4 @@
-#include "api/historian/wide_table.h"
+#include "api/historian/layouts/wide_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "api/csv/columns/heading.h"
-#include "api/historian/loop_rows.h"
-#include "api/historian/mode_track.h"
+#include "api/historian/layouts/tag_clock.h"
+#include "api/historian/values/joined_tags.h"
+#include "api/historian/values/mode_track.h"
 
 namespace tunewright::api {
 namespace {
@@ -80,8 +81,7 @@ bool in_different_lines(const std::vector<double>& y, const std::vector<double>&
 
 class WideTable : public LoopTable {
 public:
-    WideTable(std::vector<ClockColumn> clocks, double spacing)
-        : clocks_(std::move(clocks)), spacing_(spacing) {}
+    WideTable(std::vector<ClockColumn> clocks, double spacing) : clocks_(std::move(clocks)), spacing_(spacing) {}
 
     /// `clock_of`: the index of the clock of a column.
     template <class ClockOf>
@@ -322,7 +322,8 @@ std::variant<std::unique_ptr<LoopTable>, Problem> open_single_table(const TableH
         const std::string why = head.layout.width <= kMaxListedColumns ? " " + faults.front().message : "";
         return unreadable_loops(
             "No loop was found. Name the columns after their tags, such as FIC101.PV, FIC101.OP, FIC101.SP and "
-            "FIC101.MODE." + why);
+            "FIC101.MODE." +
+            why);
     }
     LoopTags loop{options.name, found.at, {}, {}};
     loop.at[kTimeRole].reset();

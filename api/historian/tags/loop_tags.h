@@ -1,4 +1,5 @@
-// The loops in the tags or headings of a file: "FIC101.PV", "TIC-101/PID1/OUT.CV" and "TIC101.MODE.ACTUAL", in any order.
+// The loops in the tags or headings of a file: "FIC101.PV", "TIC-101/PID1/OUT.CV" and "TIC101.MODE.ACTUAL", in any
+// order.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@ TagName split_tag(std::string_view tag);
 
 /// The tags of one loop, as indices.
 struct LoopTags {
-    std::string name;                                    ///< of the loop, as written
+    std::string name;                                       ///< of the loop, as written
     std::array<std::optional<std::size_t>, kRoleCount> at;  ///< by role; there is no time
     std::optional<std::size_t> y_quality, u_quality;
     std::string fault = {};  ///< the reason why the tags are ambiguous; "" if they are not

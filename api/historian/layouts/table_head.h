@@ -2,16 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "api/csv/columns/columns.h"
-#include "api/historian/tag_clock.h"
-#include "api/historian/value_cells.h"
-#include "api/historian/value_quality.h"
+#include "api/historian/values/value_cells.h"
+#include "api/historian/values/value_quality.h"
 
 namespace tunewright::api {
 
@@ -35,9 +32,5 @@ struct TableHead {
 
 /// Options of the readers of records for a file of loops.
 CsvOptions csv_options(const LoopsOptions& options);
-
-/// The clock for times in this column, `clock` with the time of day; or the reason why there is none.
-std::variant<TagClock, std::string> open_clock(const TableHead& head, std::size_t column,
-                                               std::optional<std::size_t> clock, const LoopsOptions& options);
 
 }  // namespace tunewright::api

@@ -4,9 +4,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "api/csv/time_column.h"
+#include "api/historian/layouts/loop_table.h"
+#include "api/historian/layouts/table_head.h"
 
 namespace tunewright::api {
 
@@ -47,5 +51,9 @@ private:
     TimeColumn times_;
     double seconds_;
 };
+
+/// The clock for times in this column, `clock` with the time of day; or the reason why there is none.
+std::variant<TagClock, std::string> open_clock(const TableHead& head, std::size_t column,
+                                               std::optional<std::size_t> clock, const LoopsOptions& options);
 
 }  // namespace tunewright::api

@@ -5,9 +5,9 @@
 #include <optional>
 #include <variant>
 
-#include "api/historian/loop_table.h"
-#include "api/historian/loop_tags.h"
-#include "api/historian/table_head.h"
+#include "api/historian/layouts/loop_table.h"
+#include "api/historian/layouts/table_head.h"
+#include "api/historian/tags/loop_tags.h"
 
 namespace tunewright::api {
 

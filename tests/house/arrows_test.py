@@ -63,7 +63,7 @@ ROOMS = {
         "shorthand": {"contract", "csv", "json"},
         "registries": {"outcome", "contract", "describe", "formula"},
         "range_service": {"outcome", "contract", "describe"},
-        "check_service": {"outcome", "contract", "describe", "json"},
+        "check_service": {"outcome", "contract", "historian", "csv", "describe", "json"},
         "service": {"outcome", "outline", "range_service", "check_service", "shorthand", "contract", "describe", "json"},
         "batch": {"service", "contract", "historian", "csv", "describe", "json"},
     },

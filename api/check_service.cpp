@@ -179,6 +179,7 @@ std::variant<std::string, Problem> joined_requests(std::string_view text) {
         else
             for (const Json& loop : (*request)["loops"]) (*joined)["loops"].push_back(loop);
     }
+    if (!joined) return std::get<Problem>(std::move(whole));
     return joined->dump();
 }
 

@@ -51,6 +51,13 @@ void JoinedLoops::add(const std::string& file, LoopsReader& reader) {
     }
 }
 
+void JoinedLoops::add_unreadable(const std::string& file, std::string reason) {
+    TaggedLoop loop;
+    loop.tag = file;
+    loop.fault = std::move(reason);
+    parts_.try_emplace(lower_case(file), Part{file, std::move(loop)});
+}
+
 void JoinedLoops::join(Part& part, const std::string& file, TaggedLoop loop) {
     TaggedLoop& whole = part.loop;
     if (whole.fault && !loop.fault)

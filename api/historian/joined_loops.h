@@ -20,6 +20,9 @@ public:
     /// dates in both files, or if one part cannot be read, that is the loop's fault and names the files.
     void add(const std::string& file, LoopsReader& reader);
 
+    /// Takes a file that cannot be read as a loop with that fault, under the name of the file.
+    void add_unreadable(const std::string& file, std::string reason);
+
     /// Values and times that are kept.
     std::size_t numbers() const { return numbers_; }
 

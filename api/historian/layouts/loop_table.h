@@ -19,9 +19,10 @@ namespace tunewright::api {
 inline constexpr std::size_t kMaxLoopNumbers = 30'000'000;
 
 struct LoopsOptions {
-    std::string time_unit = "s";   ///< of the times of the loops
-    bool time_unit_given = false;  ///< also that of times whose unit the file does not state
-    std::string name = "Loop 1";   ///< tag of the loop in a file whose headings name none, such as "t,sp,pv,op"
+    std::string time_unit = "s";      ///< of the times of the loops
+    bool time_unit_given = false;     ///< also that of times whose unit the file does not state
+    std::string file_time_unit = {};  ///< of the times of the file, which overrides the file; "": the file's own
+    std::string name = "Loop 1";      ///< tag of the loop in a file whose headings name none, such as "t,sp,pv,op"
     std::size_t max_numbers = kMaxLoopNumbers;
 };
 

@@ -29,6 +29,7 @@ CsvOptions csv_options(const LoopsOptions& options) {
     CsvOptions out;
     out.time_unit = options.time_unit;
     out.time_unit_given = options.time_unit_given;
+    out.file_time_unit = options.file_time_unit;
     return out;
 }
 

@@ -1,5 +1,13 @@
 // Made by generate_contract.mjs from the service's /openapi.json; not to be edited.
 export const UNITS = {
+  CheckedRecord: {
+    sample_time: "time",
+    duration: "time",
+    longest_gap: "time",
+    noise: "y",
+    y_step: "y",
+    u_step: "u",
+  },
   DataQuality: {
     sample_time: "time",
     noise_std: "y",
@@ -21,6 +29,22 @@ export const UNITS = {
     peak: "y",
     recovery_time: "time",
     TV: "u",
+  },
+  LoopCause: {
+    size: "u",
+    jump: "u",
+  },
+  LoopPerformance: {
+    variability: "y",
+    mean_error: "y",
+  },
+  LoopPeriod: {
+    period: "time",
+    period_error: "time",
+    amplitude: "y",
+  },
+  LoopRank: {
+    gain: "y",
   },
   MissingPart: {
     longest: "time",

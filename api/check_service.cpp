@@ -14,12 +14,13 @@ namespace {
 struct ReadLoops {
     CheckQuestion question;
     std::vector<std::size_t> places;
-    std::vector<std::pair<std::size_t, check::LoopCheck>> unreadable;
+    std::vector<std::pair<std::size_t, CheckedLoop>> unreadable;
 };
 
 ReadLoops read_loops(CheckRequest&& request) {
     ReadLoops out;
     out.question.cluster = request.cluster;
+    out.question.settings = request.settings;
     const Units units = request.units.value_or(Units{});
     for (std::size_t i = 0; i < request.loops.size(); ++i) {
         std::string tag = tag_of(request.loops[i], i);
@@ -28,7 +29,7 @@ ReadLoops read_loops(CheckRequest&& request) {
             out.question.loops.push_back(std::move(*question.value));
             out.places.push_back(i);
         } else {
-            out.unreadable.emplace_back(i, check::unreadable_loop(std::move(tag), question.why));
+            out.unreadable.emplace_back(i, CheckedLoop{check::unreadable_loop(std::move(tag), question.why), {}});
         }
     }
     return out;
@@ -41,9 +42,7 @@ Expected<CheckResult> checked(CheckRequest request, const RunControl& control) {
     if (!result || loops.unreadable.empty()) return result;
     for (auto& [place, loop] : loops.unreadable)
         result->loops.insert(result->loops.begin() + static_cast<std::ptrdiff_t>(place), std::move(loop));
-    std::vector<const check::LoopCheck*> all;
-    for (const auto& loop : result->loops) all.push_back(&loop);
-    result->plant = check::check_plant(all, loops.question.cluster);
+    result->plant = judged_together(result->loops, loops.question.cluster);
     return result;
 }
 

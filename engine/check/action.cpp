@@ -25,17 +25,19 @@ Action action_for(const LoopCheck& check) {
         case Verdict::sluggish:
             return {retune, Owner::control, "Tune the loop: it removes disturbances more slowly than it could."};
         case Verdict::external:
-            return {find_source, Owner::process,
-                    "Find the source of the disturbance: it comes from outside this loop. Look for a loop with the same "
-                    "period."};
+            return {
+                find_source, Owner::process,
+                "Find the source of the disturbance: it comes from outside this loop. Look for a loop with the same "
+                "period."};
         case Verdict::saturation:
             return {check_range, Owner::process,
                     "The output is at its limit for part of the time, where nothing is controlled. Look for the reason "
                     "in the process, or at the size of the valve."};
         case Verdict::quantised:
-            return {check_transmitter, Owner::instruments,
-                    "The measurement comes in coarse steps. Look at the range of the transmitter, the converter and the "
-                    "historian."};
+            return {
+                check_transmitter, Owner::instruments,
+                "The measurement comes in coarse steps. Look at the range of the transmitter, the converter and the "
+                "historian."};
         case Verdict::manual:
             return {return_to_automatic, Owner::operations,
                     "Ask why the loop is in manual, mend that, and return it to automatic."};

@@ -1,15 +1,323 @@
 #include "engine/check/cause.h"
 
-namespace tunewright::check {
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
-Cause cause_of(const CauseQuestion&, const std::stop_token&) {
-    Cause cause;
-    cause.why_open = "The record does not tell.";
-    return cause;
+#include "engine/check/hysteresis.h"
+#include "engine/check/loop_law.h"
+#include "engine/check/loop_speed.h"
+#include "engine/check/thresholds.h"
+#include "engine/check/valve_fit.h"
+#include "engine/identification/record/series.h"
+#include "engine/number_text.h"
+#include "engine/numerics/statistics.h"
+
+namespace tunewright::check {
+namespace {
+
+constexpr double kSettling = 0.05;     // of the record: left out of the oscillation, for the start of a cycle
+constexpr double kSamePeriod = 0.1;    // relative: output and error oscillate as one
+constexpr double kOtherPeriod = 0.35;  // in ln: a candidate further off is another one
+constexpr double kSlowTilt = 0.7;
+constexpr double kClearlyRegular = 5, kClearShare = 0.5;
+// Of fit_hysteresis: clear, and in part.
+constexpr double kDeadBandGain = 0.6, kDeadBandExplained = 0.75, kDeadBandLinear = 0.8, kSureDeadBand = 1.2;
+constexpr double kLeastBandRatio = 0.4, kMostBandRatio = 1.1;
+constexpr double kPartGain = 0.28, kPartExplained = 0.4, kPartLinear = 0.65, kPartLeast = 0.55, kPartMost = 1;
+constexpr int kPartTurns = 3;
+constexpr std::size_t kCrossingBlocks = 200;
+
+std::string percent(double share) { return figure_text(100 * share) + " %"; }
+
+class Diagnosis {
+public:
+    Diagnosis(const CauseQuestion& q, const std::stop_token& stop) : q_(q), stop_(stop), error_(q.samples.error()) {}
+
+    Cause result() {
+        if (auto found = by_service()) return *found;
+        look_at_oscillation();
+        if (auto found = by_limits()) return *found;
+        if (auto found = by_steps_of_measurement()) return *found;
+        if (auto found = by_valve()) return *found;
+        if (auto found = by_dead_band()) return *found;
+        if (auto found = by_oscillation()) return *found;
+        if (auto found = by_what_is_missing()) return *found;
+        return by_speed();
+    }
+
+private:
+    Cause cause(Verdict verdict, Confidence confidence, std::vector<Verdict> alternatives = {}) const {
+        Cause out{.verdict = verdict, .confidence = confidence};
+        out.alternatives = std::move(alternatives);
+        out.period = no_figure("This cause makes no cycle.");
+        out.size = out.jump = no_figure("Only a sticking valve or a backlash has one.");
+        out.evidence = evidence_;
+        return out;
+    }
+    Cause open(const std::string& why, std::vector<Verdict> alternatives) const {
+        Cause out = cause(Verdict::undetermined, Confidence::open, std::move(alternatives));
+        out.why_open = why;
+        return out;
+    }
+    void add(const char* code, double value, std::optional<double> limit, const std::string& detail) {
+        evidence_.push_back({code, value, limit, detail});
+    }
+    std::string time(double rows) const { return figure_text(rows * q_.samples.step); }
+
+    std::optional<Cause> by_service() {
+        const double frozen = q_.service.measurement_still, held = q_.service.output_still;
+        const double manual = std::max(held, q_.service.manual.value_or(0));
+        if (!(deviation(q_.samples.y) > 0) || (frozen >= kFrozenShare && held < kHeldShare)) {
+            add("measurement-still", frozen, kFrozenShare,
+                "The measurement stands still for " + percent(frozen) + " of the time while the output moves.");
+            return cause(Verdict::frozen, Confidence::sure);
+        }
+        if (!(deviation(q_.samples.u) > 0) || manual >= kHeldShare) {
+            add("output-held", manual, kHeldShare,
+                "For " + percent(manual) + " of the time nobody controls: the loop is in manual, or its output rests.");
+            return cause(Verdict::manual, Confidence::sure);
+        }
+        return std::nullopt;
+    }
+
+    void look_at_oscillation() {
+        const auto skip = std::size_t(kSettling * double(q_.samples.size()));
+        output_ = strongest_peak(std::span(q_.samples.u).subspan(skip));
+        of_error_ = strongest_peak(std::span(error_).subspan(skip));
+        const bool by_output = output_.regularity * output_.share >= of_error_.regularity * of_error_.share;
+        peak_ = by_output ? output_ : of_error_;
+        other_ = by_output ? of_error_ : output_;
+        same_ = of_error_.period > 0 && std::abs(output_.period / of_error_.period - 1) < kSamePeriod;
+        line_ = same_ ? std::min(output_.line, of_error_.line) : 0;
+        candidates_ = {{peak_.period, peak_.line_period, line_}};
+        if (!(peak_.regularity > kClearlyRegular && peak_.share > kClearShare)) {
+            for (const Peak& more : {other_, strongest_peak(std::span(q_.samples.u).subspan(skip), kSlowTilt),
+                                     strongest_peak(std::span(error_).subspan(skip), kSlowTilt)}) {
+                const bool known = more.period <= 0 || std::ranges::any_of(candidates_, [&](const PeriodCandidate& c) {
+                                       return std::abs(std::log(more.period / c.period)) <= kOtherPeriod;
+                                   });
+                if (!known) candidates_.push_back({more.period, more.line_period, 0});
+            }
+        }
+        if (peak_.regularity > kRegular)
+            add("regularity", peak_.regularity, kRegular,
+                "Output and error oscillate with a period of " + time(peak_.period) + " and a regularity of " +
+                    figure_text(peak_.regularity) + "; above 1 is regular.");
+    }
+
+    std::optional<Cause> by_limits() {
+        const double at_limit = q_.service.saturated_low + q_.service.saturated_high;
+        if (at_limit < kSaturatedShare) return std::nullopt;
+        add("at-limit", at_limit, kSaturatedShare,
+            "The output is at a limit for " + percent(at_limit) + " of the time.");
+        if (peak_.regularity >= 2.5 && peak_.cycles >= 10 && limit_visits() >= 0.25 * peak_.cycles &&
+            peak_.persistence > 0.5) {
+            Cause out = cause(Verdict::tight, Confidence::likely, {Verdict::saturation});
+            out.period = peak_.period * q_.samples.step;
+            return out;
+        }
+        return cause(Verdict::saturation, Confidence::sure);
+    }
+
+    double limit_visits() const {
+        const double near = kAtLimit * (q_.u_range[1] - q_.u_range[0]);
+        double visits = 0;
+        bool before = false;
+        for (const double u : q_.samples.u) {
+            const bool now = u <= q_.u_range[0] + near || u >= q_.u_range[1] - near;
+            visits += now && !before ? 1 : 0;
+            before = now;
+        }
+        return visits;
+    }
+
+    std::optional<Cause> by_steps_of_measurement() {
+        const double coarse = q_.quality.y_step / std::max(deviation(q_.samples.y), 1e-300);
+        if (coarse < kCoarseStep) return std::nullopt;
+        add("coarse-measurement", coarse, kCoarseStep,
+            "The measurement moves in steps of " + figure_text(q_.quality.y_step) + ", " + figure_text(coarse) +
+                " of its standard deviation.");
+        return cause(Verdict::quantised, Confidence::sure);
+    }
+
+    std::optional<Cause> by_valve() {
+        law_ = loop_law(error_, q_.samples.u, q_.samples.step);
+        sign_ = law_.gain < 0 ? -1 : 1;
+        bank_.emplace(q_.samples.u, peak_.period);
+        measurement_ = error_;
+        for (double& value : measurement_) value = -value;
+        std::optional<ValveFit> best;
+        for (const PeriodCandidate& candidate : candidates_) {
+            if (stop_.stop_requested() || !(candidate.period > 0)) break;
+            const auto fit = fit_valve(measurement_, *bank_, candidate, peak_.regularity, sign_);
+            if (fit && fit->passes && (!best || fit->strength > best->strength)) best = fit;
+        }
+        if (!best) return std::nullopt;
+        add("valve-explains", best->gain, {},
+            "A valve that sticks explains the measurement better than the output itself: the unexplained square is " +
+                percent(1 - std::exp(-best->gain)) + " less, in most tenths of the record.");
+        const bool sure = best->gain >= kSureValveGain && best->strength >= kSureValveStrength;
+        return of_valve(best->band, best->jump, sure, best->period * q_.samples.step);
+    }
+
+    Cause of_valve(double band, double jump, bool sure, Figure period) {
+        add("valve-band", band, {},
+            "Its dead band and stick together are about " + figure_text(band) + " in the unit of the output.");
+        Cause out = cause(Verdict::stiction, sure ? Confidence::sure : Confidence::likely, {Verdict::backlash});
+        out.size = band;
+        out.jump = jump;
+        out.period = std::move(period);
+        return out;
+    }
+
+    std::optional<Cause> by_dead_band() {
+        const auto fit = fit_hysteresis(q_.samples.y, *bank_, peak_.period);
+        const bool line = line_ >= kLine && peak_.cycles >= 8;
+        if (!fit || fit->plant_gain * sign_ <= 0 || line || fit->turns < 2) return std::nullopt;
+        const bool clear = fit->explained >= kDeadBandExplained && fit->gain >= kDeadBandGain &&
+                           fit->ratio >= kLeastBandRatio && fit->ratio <= kMostBandRatio &&
+                           fit->explained_without < kDeadBandLinear;
+        const bool in_part = fit->gain >= kPartGain && fit->explained_without < kPartLinear &&
+                             fit->ratio >= kPartLeast && fit->ratio <= kPartMost && fit->turns >= kPartTurns &&
+                             fit->explained >= kPartExplained;
+        if (!clear && !in_part) return std::nullopt;
+        add("dead-band", fit->explained, {},
+            "The measurement follows the output only through a dead band: with it the output explains " +
+                percent(fit->explained) + " of the measurement, without it " + percent(fit->explained_without) + ".");
+        return of_valve(fit->band, fit->jump, clear && fit->gain >= kSureDeadBand,
+                        no_figure("The valve moves too seldom for a period."));
+    }
+
+    std::optional<Cause> by_oscillation() {
+        if (line_ >= kLine && peak_.persistence >= 0.6 && (peak_.cycles >= 8 || (peak_.cycles >= 6 && line_ >= 0.97))) {
+            add("one-frequency", line_, kLine,
+                percent(line_) +
+                    " of the oscillation is one exact frequency over the whole record, which neither a "
+                    "valve nor a loop keeps.");
+            Cause out = cause(Verdict::external,
+                              line_ >= kSureLine && peak_.cycles >= 8 ? Confidence::sure : Confidence::likely,
+                              {Verdict::tight, Verdict::stiction});
+            out.period = peak_.line_period * q_.samples.step;
+            return out;
+        }
+        if (peak_.regularity >= kResonant && peak_.persistence >= kPersistent && peak_.cycles >= kCyclesOfResonance &&
+            line_ < kLine) {
+            add("resonance", peak_.persistence, kPersistent,
+                "After three periods the oscillation still has a correlation of " + figure_text(peak_.persistence) +
+                    " with itself, its phase drifts, and no valve explains it: the loop itself hardly damps it.");
+            const bool sure = peak_.regularity >= kSurelyResonant && peak_.persistence >= kSurelyPersistent &&
+                              peak_.cycles >= kSureCycles;
+            Cause out = cause(Verdict::tight, sure ? Confidence::sure : Confidence::likely, {Verdict::external});
+            out.period = peak_.period * q_.samples.step;
+            return out;
+        }
+        if ((peak_.regularity >= kOscillates && peak_.share > kClearShare) ||
+            (line_ >= 0.85 && peak_.persistence >= 0.6)) {
+            Cause out = open("The loop oscillates, over " + figure_text(std::floor(peak_.cycles)) +
+                                 " cycles, but neither a valve, nor one exact frequency, nor a loop near its stability "
+                                 "limit is shown. A longer record, or some periods in manual, tell.",
+                             {Verdict::stiction, Verdict::tight, Verdict::external});
+            out.period = peak_.period * q_.samples.step;
+            return out;
+        }
+        return std::nullopt;
+    }
+
+    /// How often block means of the error beyond the noise change their sign; many where the set point is unknown.
+    int crossings() const {
+        const std::size_t count = std::max<std::size_t>(1, error_.size() / kCrossingBlocks);
+        const double least = 2 * noise_std(error_) / std::sqrt(double(count));
+        int changes = 0;
+        std::size_t beyond = 0, blocks = 0;
+        double before = 0;
+        for (const double value : block_means(error_, count)) {
+            ++blocks;
+            if (std::abs(value) <= least) continue;
+            ++beyond;
+            if (value * before < 0) ++changes;
+            before = value;
+        }
+        const bool known = !q_.samples.r.empty() && 2 * beyond >= blocks;
+        return known ? changes : kFewestCrossings;
+    }
+
+    /// The share of rows that are not just behind a move of the set point.
+    double free_of_moves() const {
+        const auto& r = q_.samples.r;
+        if (r.empty() || !std::isfinite(law_.Ti) || !(law_.Ti > 0)) return 1;
+        const auto reach = std::size_t(std::min(kMoveReach * law_.Ti / q_.samples.step, double(r.size())));
+        std::size_t free = 0, since = reach + 1;
+        for (std::size_t i = 0; i < r.size(); ++i) {
+            since = i > 0 && r[i] != r[i - 1] ? 0 : since + 1;
+            free += since > reach ? 1 : 0;
+        }
+        return double(free) / double(r.size());
+    }
+
+    std::optional<Cause> by_what_is_missing() {
+        const int found = crossings();
+        if (found < kFewestCrossings)
+            return open("The error changes its sign only " + std::to_string(found) +
+                            " times: the record is short against this loop. Record for several times as long.",
+                        {Verdict::sluggish, Verdict::stiction});
+        const double free = free_of_moves();
+        const bool moves = !q_.samples.r.empty() && deviation(q_.samples.r) > 1.5 * deviation(error_);
+        if (free < kFreeOfMoves && moves)
+            return open("Only " + percent(free) +
+                            " of the record is free of set-point moves: how the loop treats loads "
+                            "does not show. Identify the plant from these moves instead.",
+                        {Verdict::healthy, Verdict::sluggish, Verdict::stiction});
+        return std::nullopt;
+    }
+
+    Cause by_speed() {
+        std::optional<LoopSpeed> speed;
+        if (law_.explained >= kKnownLaw && std::isfinite(law_.Ti) && law_.Ti > 0) {
+            std::vector<double> y(q_.samples.y);
+            for (double& value : y) value *= sign_;
+            speed = loop_speed(y, q_.samples.u, std::abs(law_.gain), law_.Ti, q_.samples.step, stop_);
+        }
+        if (speed) {
+            add("pace", speed->pace, {},
+                "Crossover frequency times dead time is about " + figure_text(speed->pace) +
+                    ": 0.5 is quick, below 0.19 the loop is slower than its dead time asks.");
+            if (speed->slow >= kSlow && speed->load_steps > 0 && speed->dead_time > 0.8 * speed->resolution) {
+                add("slow", speed->slow, kSlow,
+                    "By the reaction to " + std::to_string(speed->load_steps) +
+                        " steps of the load the loop is sluggish with a "
+                        "likelihood of " +
+                        percent(speed->slow) + ".");
+                return cause(Verdict::sluggish, Confidence::likely, {Verdict::healthy});
+            }
+        }
+        add("no-fault", 0, {}, "No oscillation, no limit and no fault of the valve is seen.");
+        const bool doubtful = speed && speed->slow >= kPerhapsSlow;
+        return cause(Verdict::healthy, Confidence::likely,
+                     doubtful || !speed ? std::vector{Verdict::sluggish} : std::vector<Verdict>{});
+    }
+
+    const CauseQuestion& q_;
+    const std::stop_token& stop_;
+    std::vector<double> error_, measurement_;
+    Peak output_, of_error_, peak_, other_;
+    bool same_ = false;
+    double line_ = 0, sign_ = 1;
+    std::vector<PeriodCandidate> candidates_;
+    LoopLaw law_;
+    std::optional<ValveBank> bank_;
+    std::vector<Evidence> evidence_;
+};
+
+}  // namespace
+
+Cause cause_of(const CauseQuestion& question, const std::stop_token& stop) {
+    return Diagnosis(question, stop).result();
 }
 
 Cause insufficient(const RecordQuality& quality) {
     Cause cause{.verdict = Verdict::insufficient_data};
+    cause.size = cause.jump = cause.period = no_figure("The record is not good enough.");
     for (const Warning& remark : quality.remarks)
         if (remark.level == WarningLevel::bad && cause.why_open.empty()) cause.why_open = remark.detail;
     return cause;

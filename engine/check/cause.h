@@ -7,6 +7,7 @@
 #include "engine/check/loop_check.h"
 #include "engine/check/oscillation.h"
 #include "engine/check/samples.h"
+#include "engine/check/service.h"
 
 namespace tunewright::check {
 

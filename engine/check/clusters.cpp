@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "engine/number_text.h"
@@ -95,8 +96,8 @@ void find_source(std::span<const LoopCheck* const> loops, Cluster& cluster) {
     const LoopCheck &first = *loops[cluster.loops[0]], &second = *loops[cluster.loops[1]];
     const std::string period = figure_text(cluster.period) + " s";
     if (source_score(first) < kClearSource * source_score(second)) {
-        cluster.why = "No loop stands out as the source of the oscillation with a period of " + period +
-                      ": put " + first.tag + " in manual for some periods and see whether the others stop.";
+        cluster.why = "No loop stands out as the source of the oscillation with a period of " + period + ": put " +
+                      first.tag + " in manual for some periods and see whether the others stop.";
         return;
     }
     cluster.source = cluster.loops[0];
@@ -137,7 +138,8 @@ std::vector<CascadePair> cascades_of(std::span<const LoopCheck* const> loops) {
         for (std::size_t slave = 0; slave < loops.size(); ++slave) {
             const Shape &outer = loops[master]->shape, &inner = loops[slave]->shape;
             if (master == slave || outer.output.empty() || inner.set_point.empty()) continue;
-            if (!share_time(outer, inner) || std::abs(outer.from - inner.from) > 0.01 * (outer.to - outer.from)) continue;
+            if (!share_time(outer, inner) || std::abs(outer.from - inner.from) > 0.01 * (outer.to - outer.from))
+                continue;
             if (cosine(outer.output, inner.set_point) > kSlave) pairs.push_back({master, slave});
         }
     }

@@ -9,24 +9,17 @@
 namespace tunewright::check {
 namespace {
 
-constexpr int kLeastOrder = 10, kMostOrder = 60;
-constexpr double kStandardErrors = 2;
-constexpr double kSeen = 2;  // standard errors of a correlation of white noise
+// With a shorter model the slow end of the impulse response is lost, and the ratio comes out too high: by 0.04 with 15
+// terms, 0.01 with 60, within 0.005 with 100, over random loops.
+constexpr int kMostOrder = 100;
+constexpr double kStandardErrors = 2.6;  // hold the exact ratio on 96 of 100 random loops
+constexpr int kLongestResponse = 2000;   // samples
+constexpr double kSeen = 2;              // standard errors of a correlation of white noise
 
-/// Coefficients a of e_t = sum a_i e_{t-i} + w_t, and the variance of w (Burg 1967: least squares forwards and backwards,
-/// always stable).
-struct Autoregression {
-    std::vector<double> a;
-    double variance = 0;
-};
-
-Autoregression burg(const std::vector<double>& e, int order) {
+/// Coefficients a of e_t = sum a_i e_{t-i} + w_t (Burg 1967: least squares forwards and backwards, always stable).
+std::vector<double> burg(const std::vector<double>& e, int order) {
     const std::size_t n = e.size();
-    std::vector<double> forward(e), backward(e), before;
-    Autoregression model;
-    double power = 0;
-    for (const double value : e) power += value * value;
-    model.variance = power / static_cast<double>(n);
+    std::vector<double> forward(e), backward(e), a, before;
     for (int m = 0; m < order; ++m) {
         double product = 0, squares = 0;
         const auto from = static_cast<std::size_t>(m) + 1;
@@ -36,25 +29,19 @@ Autoregression burg(const std::vector<double>& e, int order) {
         }
         if (!(squares > 0)) break;
         const double k = 2 * product / squares;
-        before = model.a;
-        for (std::size_t i = 0; i < before.size(); ++i) model.a[i] = before[i] - k * before[before.size() - 1 - i];
-        model.a.push_back(k);
+        before = a;
+        for (std::size_t i = 0; i < before.size(); ++i) a[i] = before[i] - k * before[before.size() - 1 - i];
+        a.push_back(k);
         for (std::size_t t = n - 1; t >= from; --t) {
             const double f = forward[t];
             forward[t] = f - k * backward[t - 1];
             backward[t] = backward[t - 1] - k * f;
         }
-        model.variance *= 1 - k * k;
     }
-    return model;
+    return a;
 }
 
-/// The order with the least criterion of Akaike, corrected for few samples, is not searched: a long model costs little
-/// where the samples are many, and what it adds to the impulse response is within its standard error.
-int order_for(std::size_t samples, int longest) {
-    const int wanted = std::max(kLeastOrder, 3 * longest);
-    return std::max(1, std::min({kMostOrder, wanted, static_cast<int>(samples / 10)}));
-}
+int order_for(std::size_t samples) { return std::max(1, std::min(kMostOrder, static_cast<int>(samples / 10))); }
 
 std::vector<double> impulse_response(const std::vector<double>& a, int count) {
     std::vector<double> psi(static_cast<std::size_t>(count), 0.0);
@@ -87,24 +74,24 @@ HarrisIndex harris_index(std::span<const double> error, std::span<const int> del
         squares += value * value;
     }
     if (e.empty() || !(squares > 0) || delays.empty()) return index;
-    const auto model = burg(e, order_for(e.size(), delays.back()));
-    const auto psi = impulse_response(model.a, delays.back());
-    const double variance = squares / static_cast<double>(e.size());
-    double sum = 0;
+    const auto model = burg(e, order_for(e.size()));
+    const int longest = std::max(delays.back() + 1, std::min(kLongestResponse, static_cast<int>(e.size() / 2)));
+    const auto psi = impulse_response(model, longest);
+    double all = 0, sum = 0;
+    for (const double value : psi) all += value * value;
     int reached = 0;
     for (const int delay : delays) {
-        for (; reached < delay; ++reached) sum += psi[static_cast<std::size_t>(reached)] * psi[static_cast<std::size_t>(reached)];
-        index.by_delay.push_back(std::min(1.0, model.variance * sum / variance));
+        for (; reached < delay; ++reached) {
+            const double value = psi[static_cast<std::size_t>(reached)];
+            sum += value * value;
+        }
+        index.by_delay.push_back(std::min(1.0, sum / all));
     }
     const auto [low, high] = std::ranges::minmax(index.by_delay);
     const double relative = variance_error(e);
-    // A ratio near 0 or 1 has a smaller error: both variances then vary together, or one hardly counts.
-    const auto width = [&](double eta, double delay) {
-        const double of_model = std::sqrt(4 * delay / static_cast<double>(e.size()));
-        return kStandardErrors * std::hypot(relative, of_model) * eta * std::max(0.05, 1 - eta);
-    };
-    index.low = std::max(0.0, low - width(low, delays.front()));
-    index.high = std::min(1.0, high + width(high, delays.back()));
+    const auto width = [&](double eta) { return kStandardErrors * relative * eta * std::sqrt(1 - eta); };
+    index.low = std::max(0.0, low - width(low));
+    index.high = std::min(1.0, high + width(high));
     return index;
 }
 

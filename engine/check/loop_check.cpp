@@ -35,6 +35,21 @@ std::optional<Error> refused(const LoopQuestion& question) {
     return std::nullopt;
 }
 
+/// The period that the cause knows is the more exact one; a cycle that is too irregular for the spectrum is one
+/// nevertheless.
+void take_period(LoopCheck& check) {
+    if (!check.cause.period) return;
+    auto& periods = check.oscillation.periods;
+    constexpr double kSame = 0.25;  // in ln
+    const auto same = std::ranges::find_if(
+        periods, [&](const Period& period) { return std::abs(std::log(period.period / *check.cause.period)) < kSame; });
+    Period first = same != periods.end() ? *same : Period{};
+    if (same != periods.end()) periods.erase(same);
+    first.period = *check.cause.period;
+    periods.insert(periods.begin(), first);
+    check.oscillation.found = true;
+}
+
 }  // namespace
 
 Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_token& stop) {
@@ -58,8 +73,9 @@ Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_tok
         if (stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The check was stopped."};
         check.cause = cause_of({question, samples, study, u_range, check.quality, check.service}, stop);
         if (stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The check was stopped."};
+        take_period(check);
         draw_details(samples, study, check);
-        check.shape = shape_of(samples, study, question);
+        check.shape = shape_of(samples, check.oscillation, study, question);
     } else {
         check.cause = insufficient(check.quality);
     }

@@ -45,26 +45,26 @@ struct LoopQuestion {
     LoopKind kind = LoopKind::unknown;
     bool averaging = false;  ///< a level that smooths flows: its variability is its purpose
     Record record;
-    std::optional<double> start;                             ///< s since 1970 of t = 0
-    std::optional<std::array<double, 2>> y_range, u_range;   ///< of the transmitter, of the output
-    std::optional<ParallelPid> controller;                   ///< today's settings
-    std::optional<double> weight;                            ///< money per unit of |e| and hour
-    double seconds = 1;                                      ///< in a unit of the record's time
+    std::optional<double> start;                            ///< s since 1970 of t = 0
+    std::optional<std::array<double, 2>> y_range, u_range;  ///< of the transmitter, of the output
+    std::optional<ParallelPid> controller;                  ///< today's settings
+    std::optional<double> weight;                           ///< money per unit of |e| and hour
+    double seconds = 1;                                     ///< in a unit of the record's time
 };
 
 /// How good the record is. Shares are of the rows or of the time, 0 to 1.
 struct RecordQuality {
     int rows = 0;
-    double sample_time = 0;    ///< time
-    double duration = 0;       ///< time
-    double missing = 0;        ///< share of rows without a usable measurement
-    double held = 0;           ///< share of rows that repeat the measurement of the row before: compressed, or quantised
-    double longest_gap = 0;    ///< time
-    double noise = 0;          ///< standard deviation from sample to sample, y
-    double y_step = 0;         ///< grid of the measurement, y; 0: none found
-    double u_step = 0;         ///< grid of the output, u; 0: none found
-    bool compressed = false;   ///< most rows lie on stairs or straight lines of a historian
-    bool enough = true;        ///< for a diagnosis
+    double sample_time = 0;   ///< time
+    double duration = 0;      ///< time
+    double missing = 0;       ///< share of rows without a usable measurement
+    double held = 0;          ///< share of rows that repeat the measurement of the row before: compressed, or quantised
+    double longest_gap = 0;   ///< time
+    double noise = 0;         ///< standard deviation from sample to sample, y
+    double y_step = 0;        ///< grid of the measurement, y; 0: none found
+    double u_step = 0;        ///< grid of the output, u; 0: none found
+    bool compressed = false;  ///< most rows lie on stairs or straight lines of a historian
+    bool enough = true;       ///< for a diagnosis
     std::vector<Warning> remarks;
 };
 
@@ -78,11 +78,11 @@ struct ServiceShares {
 
 /// One oscillation of the error.
 struct Period {
-    double period = 0;          ///< time
-    double period_error = 0;    ///< standard error, time
-    double regularity = 0;      ///< above 1: regular (Thornhill, Huang, Zhang 2003)
-    double share = 0;           ///< of the error's variance, 0 to 1
-    double amplitude = 0;       ///< half of peak to peak, y
+    double period = 0;        ///< time
+    double period_error = 0;  ///< standard error, time
+    double regularity = 0;    ///< above 1: regular (Thornhill, Huang, Zhang 2003)
+    double share = 0;         ///< of the error's variance, 0 to 1
+    double amplitude = 0;     ///< half of peak to peak, y
 };
 
 /// Strongest first.
@@ -102,11 +102,12 @@ struct Evidence {
 struct Cause {
     Verdict verdict = Verdict::undetermined;
     Confidence confidence = Confidence::open;
-    std::vector<Evidence> evidence = {};      ///< the strongest first
+    std::vector<Evidence> evidence = {};     ///< the strongest first
     std::vector<Verdict> alternatives = {};  ///< the likeliest first
-    Figure size = {};                     ///< width of the dead band and stick, or of the backlash; u
-    Figure jump = {};                     ///< of the valve when it breaks loose, u
-    std::string why_open = {};            ///< one sentence, if the verdict is open
+    Figure size = {};                        ///< width of the dead band and stick, or of the backlash; u
+    Figure jump = {};                        ///< of the valve when it breaks loose, u
+    Figure period = {};                      ///< of the cycle that this cause makes, time
+    std::string why_open = {};               ///< one sentence, if the verdict is open
 };
 
 /// The variance of the error that no controller with that delay can avoid, over the variance it has: between 0 and 1, 1
@@ -147,14 +148,14 @@ struct Action {
 
 /// What the judgement of many loops needs of one: small enough to be kept for thousands.
 struct Shape {
-    double from = 0, to = 0;            ///< s, since 1970 if the record has a date, else since its first row
+    double from = 0, to = 0;  ///< s, since 1970 if the record has a date, else since its first row
     bool dated = false;
-    double period = 0;                  ///< of the strongest regular oscillation, s; 0: none
-    std::vector<float> spectrum;        ///< share of the error's power in each of kShapeBands bands of period
-    std::vector<float> wave;            ///< the error's last periods, in deviations, a row every wave_step
-    double wave_from = 0, wave_step = 0;  ///< s, like from
+    double period = 0;                     ///< of the strongest regular oscillation, s; 0: none
+    std::vector<float> spectrum;           ///< share of the error's power in each of kShapeBands bands of period
+    std::vector<float> wave;               ///< the error's last periods, in deviations, a row every wave_step
+    double wave_from = 0, wave_step = 0;   ///< s, like from
     std::vector<float> set_point, output;  ///< means of kShapePoints stretches; empty: not recorded or constant
-    float nonlinearity = 0;             ///< how far the wave is from a linear series (Thornhill 2005)
+    float nonlinearity = 0;                ///< how far the wave is from a linear series (Thornhill 2005)
 };
 inline constexpr int kShapeBands = 96, kShapePoints = 512;
 /// The bands of Shape::spectrum are even in ln(period), s.
@@ -181,9 +182,9 @@ struct LoopCheck {
     Action action;
     std::optional<double> weight;
     Shape shape;
-    Trend trend;      ///< the whole record, 2 kTrendStretches points at most
-    Trend excerpt;    ///< its last periods, row by row
-    Curve spectrum;   ///< share of power over period, time
+    Trend trend;            ///< the whole record, 2 kTrendStretches points at most
+    Trend excerpt;          ///< its last periods, row by row
+    Curve spectrum;         ///< share of power over period, time
     Curve autocorrelation;  ///< of the error over lag, time
 };
 inline constexpr int kTrendStretches = 120;

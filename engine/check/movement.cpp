@@ -12,10 +12,10 @@
 namespace tunewright::check {
 namespace {
 
-constexpr double kHour = 3600;               // s
+constexpr double kHour = 3600;  // s
 constexpr std::size_t kMostHarrisSamples = 20000;
-constexpr int kDelayPlaces = 8;              // delays from the shortest to the longest
-constexpr double kLeastMove = 3;             // of the noise: a smaller move of the set point shows no response
+constexpr int kDelayPlaces = 8;   // delays from the shortest to the longest
+constexpr double kLeastMove = 3;  // of the noise: a smaller move of the set point shows no response
 
 /// The longest dead time that the error's own correlation admits: a loop undoes a disturbance soon after its dead time,
 /// and with it the correlation falls to 0.
@@ -33,8 +33,7 @@ OrReason<HarrisRange> harris_range(const Samples& samples, const LoopQuestion& q
     if (samples.size() < kFewestRows) return {std::nullopt, "The record is too short."};
     const auto error = samples.error();
     if (!(deviation(error) > 0)) return {std::nullopt, "The error is constant."};
-    const std::span<const double> last =
-        std::span(error).last(std::min(error.size(), kMostHarrisSamples));
+    const std::span<const double> last = std::span(error).last(std::min(error.size(), kMostHarrisSamples));
     std::vector<int> delays;
     const int longest = longest_delay(last);
     for (int k = 0; k < kDelayPlaces; ++k) {

@@ -21,6 +21,7 @@ constexpr double kFewestCycles = 4;                    // in the record, of the 
 constexpr int kCrossings = 12;                         // of the autocorrelation, hence eleven intervals
 constexpr std::size_t kMostPeriods = 3;
 constexpr std::size_t kSpectrumPoints = 160;
+constexpr std::size_t kLinePlaces = 33;  // frequencies that are tried for a single sine
 
 /// Power over frequency of a window of the series, at twice as many frequencies as it has of its own.
 std::vector<double> power_of(const std::vector<double>& e) {
@@ -55,7 +56,7 @@ public:
     }
 
     /// Cycles per row of the strongest peak, by the power within kPeakWidth; 0: there is no power.
-    double strongest() const {
+    double strongest(double tilt = 0) const {
         std::vector<double> sum(power_.size() + 1, 0.0);
         for (std::size_t k = 0; k < power_.size(); ++k) sum[k + 1] = sum[k] + power_[k];
         const double per = 1 / static_cast<double>(2 * (power_.size() - 1));
@@ -67,7 +68,8 @@ public:
         for (std::size_t k = first; k < last; ++k) {
             const auto half = std::max(least, static_cast<std::size_t>(kPeakWidth * static_cast<double>(k)));
             const std::size_t from = k > half ? k - half : 1, to = std::min(k + half + 1, power_.size());
-            if (const double energy = sum[to] - sum[from]; energy > most) {
+            const double energy = (sum[to] - sum[from]) * (tilt == 0 ? 1 : std::pow(double(k), -tilt));
+            if (energy > most) {
                 most = energy;
                 best = k;
             }
@@ -136,6 +138,42 @@ Period measured(const Filtered& band, double f, double step) {
     return out;
 }
 
+/// Of the band's power in a single sine near the frequency, and its period, which parabolas refine between the
+/// frequencies that are tried.
+void find_line(const std::vector<double>& band, double f, Peak& peak) {
+    const double n = double(band.size());
+    double power = 1e-300;
+    for (const double value : band) power += value * value;
+    std::vector<double> of_sine(kLinePlaces);
+    const auto place = [&](std::size_t k) { return f + (-2 + 4.0 * double(k) / (kLinePlaces - 1)) / n; };
+    for (std::size_t k = 0; k < of_sine.size(); ++k) {
+        const std::complex<double> turn = std::polar(1.0, -2 * std::numbers::pi * place(k));
+        std::complex<double> sum = 0, here = 1;
+        for (const double value : band) {
+            sum += value * here;
+            here *= turn;
+        }
+        of_sine[k] = 2 * std::norm(sum) / n;
+    }
+    const auto best = std::size_t(std::ranges::max_element(of_sine) - of_sine.begin());
+    double found = place(best);
+    if (best > 0 && best + 1 < of_sine.size()) {
+        const double bend = of_sine[best - 1] - 2 * of_sine[best] + of_sine[best + 1];
+        if (bend < 0) found += (place(1) - place(0)) * 0.5 * (of_sine[best - 1] - of_sine[best + 1]) / bend;
+    }
+    peak.line = std::min(1.0, of_sine[best] / power);
+    peak.line_period = 1 / found;
+}
+
+/// The largest correlation about `periods` periods, corrected for the pairs that are missing.
+double correlation_after(const std::vector<double>& r, double period, double periods, std::size_t n) {
+    const double centre = std::round(periods * period), half = std::max(1.0, std::floor(0.2 * period));
+    if (!(centre + half < 0.8 * double(n)) || !(centre + half < double(r.size()))) return 0;
+    const auto from = r.begin() + std::ptrdiff_t(std::max(0.0, centre - half));
+    const auto to = r.begin() + std::ptrdiff_t(centre + half) + 1;
+    return *std::max_element(from, to) / (1 - centre / double(n));
+}
+
 /// The share of power in even steps of ln(period).
 Curve drawn_spectrum(const std::vector<double>& error, double step) {
     const auto power = power_of(error);
@@ -161,6 +199,26 @@ Curve drawn_spectrum(const std::vector<double>& error, double step) {
 
 }  // namespace
 
+Peak strongest_peak(std::span<const double> series, double tilt) {
+    const double centre = mean(series);
+    std::vector<double> x(series.begin(), series.end());
+    for (double& value : x) value -= centre;
+    const Search search(x);
+    const double f = search.strongest(tilt), n = double(x.size());
+    Peak peak;
+    if (!(f > 0)) return peak;
+    const Filtered band = search.band(f);
+    const Period period = measured(band, f, 1);
+    peak.period = period.period;
+    peak.regularity = period.regularity;
+    peak.share = period.share;
+    peak.cycles = n * f;
+    find_line(band.series, f, peak);
+    const auto longest = std::min(x.size() - 1, std::size_t(4 * peak.period));
+    peak.persistence = correlation_after(autocorrelation(band.series, longest), peak.period, 3, x.size());
+    return peak;
+}
+
 OscillationStudy study_oscillation(const Samples& samples) {
     OscillationStudy study;
     study.error = samples.error();
@@ -175,8 +233,10 @@ OscillationStudy study_oscillation(const Samples& samples) {
         if (!(f > 0)) break;
         const Period period = measured(search.band(f), f, samples.step);
         if (period.share < kLeastShare) break;
-        if (period.regularity > kRegular) study.found.periods.push_back(period);
-        else if (study.found.periods.empty()) study.strongest = period;
+        if (period.regularity > kRegular)
+            study.found.periods.push_back(period);
+        else if (study.found.periods.empty())
+            study.strongest = period;
         search.remove(f);
         if (++study.looked_at >= 2 * kMostPeriods) break;
     }

@@ -14,10 +14,10 @@ namespace tunewright::check {
 
 /// Loops that oscillate together.
 struct Cluster {
-    double period = 0;                 ///< s
-    std::vector<std::size_t> loops;    ///< the likely source first
-    std::optional<std::size_t> source; ///< empty: none stands out
-    std::string why;                   ///< one sentence: why that one, or why none
+    double period = 0;                  ///< s
+    std::vector<std::size_t> loops;     ///< the likely source first
+    std::optional<std::size_t> source;  ///< empty: none stands out
+    std::string why;                    ///< one sentence: why that one, or why none
 };
 
 struct CascadePair {
@@ -27,10 +27,10 @@ struct CascadePair {
 /// A loop's place in the work list.
 struct Rank {
     std::size_t loop = 0;
-    Figure gain;         ///< decrease of the mean magnitude of the error that mending may bring, y
-    Figure share;        ///< the same as a share of the error, 0 to 1
-    Figure money;        ///< per hour, with the loop's weight
-    int effort = 0;      ///< 1: settings; 2: a test; 3: work on the plant
+    Figure gain;                       ///< decrease of the mean magnitude of the error that mending may bring, y
+    Figure share;                      ///< the same as a share of the error, 0 to 1
+    Figure money;                      ///< per hour, with the loop's weight
+    int effort = 0;                    ///< 1: settings; 2: a test; 3: work on the plant
     std::optional<std::size_t> after;  ///< a loop to mend first, because it disturbs this one
 };
 

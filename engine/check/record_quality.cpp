@@ -68,10 +68,11 @@ void judge(RecordQuality& q, const Samples& samples) {
                    " of the record; only this part is judged.",
                false);
     if (q.compressed)
-        remark(q, "compressed",
-               "The measurement was compressed by the historian: between stored values it is a straight line or a stair. "
-               "Export raw values: noise, valve and oscillation are distorted.",
-               false);
+        remark(
+            q, "compressed",
+            "The measurement was compressed by the historian: between stored values it is a straight line or a stair. "
+            "Export raw values: noise, valve and oscillation are distorted.",
+            false);
 }
 
 }  // namespace

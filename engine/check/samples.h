@@ -13,21 +13,21 @@ namespace tunewright::check {
 /// where no row before has one, else it is held and marked.
 struct Rows {
     std::vector<double> t, y, u;
-    std::vector<double> r;          ///< empty: no set point
-    std::vector<char> automatic;    ///< empty: not recorded
-    std::vector<char> measured;     ///< 1: this row has a measurement of its own
-    double step = 0;                ///< the median time from row to row; 0: fewer than two rows
+    std::vector<double> r;        ///< empty: no set point
+    std::vector<char> automatic;  ///< empty: not recorded
+    std::vector<char> measured;   ///< 1: this row has a measurement of its own
+    double step = 0;              ///< the median time from row to row; 0: fewer than two rows
 };
 
 Rows rows_of(const Record& record);
 
-/// An even series: the longest part of the rows without a gap of more than kLongestGap steps. Shorter gaps keep the last
-/// values.
+/// An even series: the longest part of the rows without a gap of more than kLongestGap steps. Shorter gaps keep the
+/// last values.
 struct Samples {
     double start = 0, step = 1;  ///< time
     std::vector<double> y, u;
-    std::vector<double> r;           ///< empty: no set point
-    std::vector<char> automatic;     ///< empty: not recorded
+    std::vector<double> r;        ///< empty: no set point
+    std::vector<char> automatic;  ///< empty: not recorded
 
     std::size_t size() const { return y.size(); }
     double duration() const { return step * static_cast<double>(y.size()); }

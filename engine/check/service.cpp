@@ -8,6 +8,8 @@
 namespace tunewright::check {
 namespace {
 
+constexpr double kUnknownLimit = 0.05;  // of the output's range as seen
+
 double share(const std::vector<char>& marks) {
     return marks.empty() ? 0 : static_cast<double>(std::ranges::count(marks, 1)) / static_cast<double>(marks.size());
 }
@@ -39,7 +41,11 @@ std::array<double, 2> output_range(const LoopQuestion& question, const Samples& 
     if (question.u_range) return *question.u_range;
     if (samples.u.empty()) return {0, 100};
     const auto [low, high] = std::ranges::minmax(samples.u);
-    return {std::min(0.0, low), std::max(high > 1 ? 100.0 : 1.0, high)};
+    const double full = high > 1 ? 100 : 1;
+    if (low >= 0 && high <= full) return {0, full};
+    // In another unit the limits are unknown: a little beyond what was seen, so that nothing counts as at a limit.
+    const double beyond = kUnknownLimit * (high - low);
+    return {low - beyond, high + beyond};
 }
 
 std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range) {

@@ -13,7 +13,8 @@ std::vector<char> held_output(const Samples& samples, const std::array<double, 2
 
 ServiceShares service_of(const Samples& samples, const std::array<double, 2>& u_range);
 
-/// The range of the output: as given, else 0 to 100, or to 1 where no sample exceeds 1; widened to what was seen.
+/// The range of the output: as given, else 0 to 100, or to 1 where no sample exceeds 1; for an output in another unit
+/// somewhat more than what was seen.
 std::array<double, 2> output_range(const LoopQuestion& question, const Samples& samples);
 
 }  // namespace tunewright::check

@@ -27,9 +27,9 @@ std::vector<float> thinned(const std::vector<double>& values) {
 }
 
 /// The last kShapePoints means over a kPointsPerPeriod-th of the main period.
-void add_wave(const Samples& samples, const OscillationStudy& study, double zero, double seconds, Shape& shape) {
-    const double period = study.strongest.period / samples.step;
-    const auto count = static_cast<std::size_t>(std::max(1.0, period / kPointsPerPeriod));
+void add_wave(const Samples& samples, const OscillationStudy& study, double period, double seconds, Shape& shape) {
+    const double zero = shape.from - seconds * samples.start;
+    const auto count = static_cast<std::size_t>(std::max(1.0, period / samples.step / kPointsPerPeriod));
     const std::size_t points = std::min<std::size_t>(kShapePoints, study.error.size() / count);
     const std::size_t first = study.error.size() - points * count;
     const auto means = block_means(std::span(study.error).subspan(first), count);
@@ -53,15 +53,17 @@ std::vector<float> bands(const Curve& spectrum, double seconds) {
 
 }  // namespace
 
-Shape shape_of(const Samples& samples, const OscillationStudy& study, const LoopQuestion& question) {
+Shape shape_of(const Samples& samples, const Oscillation& oscillation, const OscillationStudy& study,
+               const LoopQuestion& question) {
     Shape shape;
     shape.dated = question.start.has_value();
     const double zero = question.start.value_or(0);
     shape.from = zero + question.seconds * samples.start;
     shape.to = shape.from + question.seconds * samples.duration();
-    if (study.found.found) shape.period = question.seconds * study.strongest.period;
+    if (oscillation.found) shape.period = question.seconds * oscillation.periods.front().period;
     shape.spectrum = bands(study.spectrum, question.seconds);
-    add_wave(samples, study, zero, question.seconds, shape);
+    add_wave(samples, study, oscillation.found ? oscillation.periods.front().period : study.strongest.period,
+             question.seconds, shape);
     shape.set_point = thinned(samples.r);
     shape.output = thinned(samples.u);
     return shape;

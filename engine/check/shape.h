@@ -7,6 +7,7 @@
 
 namespace tunewright::check {
 
-Shape shape_of(const Samples& samples, const OscillationStudy& study, const LoopQuestion& question);
+Shape shape_of(const Samples& samples, const Oscillation& oscillation, const OscillationStudy& study,
+               const LoopQuestion& question);
 
 }  // namespace tunewright::check

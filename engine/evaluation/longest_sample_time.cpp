@@ -47,8 +47,8 @@ constexpr double kTolerance = 5e-5;           // relative tolerance of a guessed
 constexpr double kExactTolerance = 1e-6;      // relative tolerance of a confirmed one, and of its Ms
 constexpr double kNearbyFactor = 1.03;        // ratio of successive sample times near an inexact guess
 constexpr int kMaxNearby = 10;
-constexpr int kMaxPeaks = 3;                  // peaks of the loop that are followed, one after the other
-constexpr double kOtherPeak = 0.3;            // in ln omega: a peak further off is another one
+constexpr int kMaxPeaks = 3;                      // peaks of the loop that are followed, one after the other
+constexpr double kOtherPeak = 0.3;                // in ln omega: a peak further off is another one
 constexpr double kMaxWholeLoopDifference = 1e-3;  // relative: Ms of the whole loop against the guess
 
 /// The peak of |S| nearest to its last frequency, followed as the sample time changes. It does not notice another peak

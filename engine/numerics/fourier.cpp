@@ -40,7 +40,7 @@ std::size_t quick_length(std::size_t n) {
 
 std::vector<std::complex<double>> half_spectrum(std::span<const double> x) {
     std::vector<std::complex<double>> X;
-    if (x.empty()) return X;
+    if (x.size() < 2) return {x.begin(), x.end()};
     const std::vector<double> in(x.begin(), x.end());
     transform().fwd(X, in);
     return X;
@@ -48,7 +48,10 @@ std::vector<std::complex<double>> half_spectrum(std::span<const double> x) {
 
 std::vector<double> series_of(std::span<const std::complex<double>> X, std::size_t n) {
     std::vector<double> x;
-    if (n == 0) return x;
+    if (n < 2) {
+        for (const auto& value : X.first(n)) x.push_back(value.real());
+        return x;
+    }
     const std::vector<std::complex<double>> in(X.begin(), X.end());
     transform().inv(x, in, static_cast<Eigen::Index>(n));
     x.resize(n);

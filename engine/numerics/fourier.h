@@ -16,8 +16,9 @@ std::vector<std::complex<double>> half_spectrum(std::span<const double> x);
 /// The real series of n values whose half spectrum is X.
 std::vector<double> series_of(std::span<const std::complex<double>> X, std::size_t n);
 
-/// r_k = sum (x_j - mean)(x_{j+k} - mean) / sum (x_j - mean)^2 for lags 0 ... longest, the sums over the pairs that exist
-/// (biased estimate, Box and Jenkins 1976, Eq. 2.1.8); all 0 but the first for a constant series. longest < x.size().
+/// r_k = sum (x_j - mean)(x_{j+k} - mean) / sum (x_j - mean)^2 for lags 0 ... longest, the sums over the pairs that
+/// exist (biased estimate, Box and Jenkins 1976, Eq. 2.1.8); all 0 but the first for a constant series. longest <
+/// x.size().
 std::vector<double> autocorrelation(std::span<const double> x, std::size_t longest);
 
 /// c_k = sum over j of (a_j - mean)(b_{j+k} - mean) / n over the deviations' product, for lags -longest ... longest, in

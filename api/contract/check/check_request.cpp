@@ -34,15 +34,15 @@ const Description<LoopRanges>& ranges_contract() {
     static const auto description = [] {
         Description<LoopRanges> d("LoopRanges", "Ranges of the transmitter and of the output, [low, high].");
         d.field("pv", &LoopRanges::pv, maybe(low_and_high()), "Of the measurement.", {.unit = "y"})
-            .field("op", &LoopRanges::op, maybe(low_and_high()), "Of the output; 0 to 100 if not given.", {.unit = "u"});
+            .field("op", &LoopRanges::op, maybe(low_and_high()), "Of the output; 0 to 100 if not given.",
+                   {.unit = "u"});
         return d;
     }();
     return description;
 }
 
 void check_loop_members(const Json&, GivenLoop& loop, Reader& reader) {
-    if (loop.record && loop.csv)
-        reader.fault_at("csv", "csv and record are both given; give one of them.");
+    if (loop.record && loop.csv) reader.fault_at("csv", "csv and record are both given; give one of them.");
     if (!loop.record && !loop.csv)
         reader.fault_at("record",
                         "record is missing; a loop has a record (t or dt, u, y and r as arrays, or csv) or csv text.");
@@ -77,8 +77,7 @@ const Description<GivenLoop>& loop_contract() {
                    "true: a level that is there to smooth flows. Its variance is its purpose and is not judged.")
             .field("record", &L::record, maybe(object(record_contract())),
                    "Its record: measurement y, output u and, if known, set point r and mode; instead of csv.")
-            .field("csv", &L::csv, maybe(text(kMaxCsvLength)),
-                   "The record as CSV text; instead of record.")
+            .field("csv", &L::csv, maybe(text(kMaxCsvLength)), "The record as CSV text; instead of record.")
             .field("columns", &L::columns, maybe(object(columns_contract())), "Columns of csv.")
             .field("time_unit", &L::time_unit, maybe(file_time_unit()), "Unit of the times in csv, if it states none.")
             .field("start", &L::start, maybe(text(kMaxStartLength)),
@@ -110,7 +109,10 @@ const Description<CheckRequest>& check_request_contract() {
         add_labels(d);
         d.field("loops", &R::loops, list_of(object(loop_contract()), 1, kMaxCheckedLoops),
                 "The loops; many large ones are sent as a batch.", {.required = true})
-            .field("cluster", &R::cluster, boolean(), "Look for loops that oscillate together, and for the source.");
+            .field("cluster", &R::cluster, boolean(), "Look for loops that oscillate together, and for the source.")
+            .field("settings", &R::settings, boolean(),
+                   "Where tuning is the cause: look for new settings too, or say which test is missing. Some seconds a "
+                   "loop.");
         add_terms(d);
         d.refuse("record", "A check takes a record for each loop: loops [{\"tag\": \"FIC101\", \"record\": {...}}].")
             .refuse("tune", "A check designs nothing; its answer says for which loops tuning helps.")

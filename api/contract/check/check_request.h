@@ -38,7 +38,7 @@ struct CheckRequest : JobTerms {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::vector<GivenLoop> loops;
-    bool cluster = true;
+    bool cluster = true, settings = false;
 };
 
 /// A job's request; its records are not read yet.

@@ -9,7 +9,8 @@ using namespace check;
 
 /// Loops are named by their place in `loops`, from 0.
 Codec<std::size_t> place() {
-    return {{}, [](const std::size_t& at, Writer& out) { out.integer(static_cast<long long>(at)); },
+    return {{},
+            [](const std::size_t& at, Writer& out) { out.integer(static_cast<long long>(at)); },
             integer(0, 1 << 20).schema};
 }
 
@@ -61,16 +62,24 @@ void add_findings(Description<Owner>& d, const CheckResult& (*check)(const Owner
             name, {}, [=](const Owner& owner, Writer& out) { codec.write(get(check(owner)), out); }, codec.schema,
             sentence);
     };
-    part("loops", list_of(answer(loop_check_contract())), [](const CheckResult& c) -> const auto& { return c.loops; },
-         "The loops, in the order of the request.");
-    part("clusters", list_of(answer(cluster_contract())), [](const CheckResult& c) -> const auto& { return c.plant.clusters; },
-         "Loops that oscillate together, the largest group first.");
-    part("cascades", list_of(answer(cascade_contract())), [](const CheckResult& c) -> const auto& { return c.plant.cascades; },
-         "Pairs of loops of which one gives the other its set point.");
-    part("ranking", list_of(answer(rank_contract())), [](const CheckResult& c) -> const auto& { return c.plant.ranking; },
-         "The work list: every loop once, first the one to mend first.");
-    part("partial", boolean(), [](const CheckResult& c) -> const bool& { return c.partial; },
-         "True: stopped before all loops were checked.");
+    part(
+        "loops", list_of(answer(loop_check_contract())), [](const CheckResult& c) -> const auto& { return c.loops; },
+        "The loops, in the order of the request.");
+    part(
+        "clusters", list_of(answer(cluster_contract())),
+        [](const CheckResult& c) -> const auto& { return c.plant.clusters; },
+        "Loops that oscillate together, the largest group first.");
+    part(
+        "cascades", list_of(answer(cascade_contract())),
+        [](const CheckResult& c) -> const auto& { return c.plant.cascades; },
+        "Pairs of loops of which one gives the other its set point.");
+    part(
+        "ranking", list_of(answer(rank_contract())),
+        [](const CheckResult& c) -> const auto& { return c.plant.ranking; },
+        "The work list: every loop once, first the one to mend first.");
+    part(
+        "partial", boolean(), [](const CheckResult& c) -> const bool& { return c.partial; },
+        "True: stopped before all loops were checked.");
 }
 
 }  // namespace
@@ -83,7 +92,8 @@ const Description<CheckAnswer>& check_result_contract() {
             .field(
                 "version", {}, [](const CheckAnswer&, Writer& out) { out.text(TUNEWRIGHT_VERSION); }, words().schema,
                 "Version of the service.")
-            .field("request_hash", &CheckAnswer::request_hash, words(), "SHA-256 of the request in its canonical form.");
+            .field("request_hash", &CheckAnswer::request_hash, words(),
+                   "SHA-256 of the request in its canonical form.");
         return d;
     }();
     return description;

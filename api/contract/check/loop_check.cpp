@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "api/contract/controller.h"
+#include "api/contract/plant/plant.h"
 #include "api/contract/result/evaluation.h"
 
 namespace tunewright::api {
@@ -115,13 +117,16 @@ const Description<Cause>& cause_contract() {
     static const auto description = [] {
         Description<Cause> d("LoopCause", "Why the loop is as it is.");
         d.field("verdict", &Cause::verdict, only_answered(check_verdict()), "The cause.")
-            .field("confidence", &Cause::confidence, confidence(), "open: the verdict is undetermined or insufficient-data.")
+            .field("confidence", &Cause::confidence, confidence(),
+                   "open: the verdict is undetermined or insufficient-data.")
             .field("evidence", &Cause::evidence, answered_list(evidence_contract()), "The strongest first.")
             .field("alternatives", &Cause::alternatives, only_answered(list_of(check_verdict())),
                    "Other causes that the record does not exclude, the likeliest first.")
-            .field("size", &Cause::size, figure(), "Of a sticking valve its dead band and stick, of a backlash its width.",
+            .field("size", &Cause::size, figure(),
+                   "Of a sticking valve its dead band and stick, of a backlash its width.", {.unit = "u"})
+            .field("jump", &Cause::jump, figure(), "By which a sticking valve jumps when it breaks loose.",
                    {.unit = "u"})
-            .field("jump", &Cause::jump, figure(), "By which a sticking valve jumps when it breaks loose.", {.unit = "u"})
+            .field("period", &Cause::period, figure(), "Of the cycle that this cause makes.", {.unit = "time"})
             .field("why_open", &Cause::why_open,
                    unless<std::string>(words(), [](const std::string& why) { return why.empty(); }),
                    "Why the record does not tell the cause.")
@@ -139,14 +144,13 @@ const Description<HarrisRange>& harris_contract() {
                          "between the two delays; 1 is best. It is a range, not a grade.");
         d.field("low", &H::low, answered(), "Its lower end.")
             .field("high", &H::high, answered(), "Its upper end.")
-            .field(
-                "delays", {},
-                [](const H& range, Writer& out) {
-                    out.begin_array();
-                    for (const double delay : range.delays) out.number(delay);
-                    out.end_array();
-                },
-                numbers(2, 2).schema, "Shortest and longest delay.", {.unit = "time"});
+            .field("delays", {},
+                   [](const H& range, Writer& out) {
+                       out.begin_array();
+                       for (const double delay : range.delays) out.number(delay);
+                       out.end_array();
+                   },
+                   numbers(2, 2).schema, "Shortest and longest delay.", {.unit = "time"});
         return d;
     }();
     return description;
@@ -189,6 +193,52 @@ const Description<Action>& action_contract() {
     return description;
 }
 
+const Description<TestPlan>& test_plan_contract() {
+    static const auto description = [] {
+        using P = TestPlan;
+        using enum P::Kind;
+        Description<P> d("CheckTest", "The test that shows the plant: steps up and down.");
+        d.field("kind", &P::kind,
+                only_answered(choice<P::Kind>({{"set-point-steps", set_point_steps}, {"output-steps", output_steps}})),
+                "In automatic, or in manual.")
+            .field("size", &P::size, answered(), "Of each step, in the unit of y or u.")
+            .field("steps", &P::steps, only_answered(integer(1, 100)), "How many.")
+            .field("hold", &P::hold, answered(), "How long each is held.", {.unit = "time"})
+            .field("duration", &P::duration, answered(), "Of the whole test.", {.unit = "time"})
+            .field("beyond_seen", &P::beyond_seen, only_answered(boolean()),
+                   "True: the size is more than the record's own range.")
+            .field("detail", &P::detail, words(), "A sentence.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<LoopCure>& cure_contract() {
+    static const auto description = [] {
+        using C = LoopCure;
+        Description<C> d("LoopCure", "From the cause to the settings.");
+        const auto pid = [&](const char* name, std::optional<IdealPid> C::*member, const char* sentence) {
+            d.field(
+                name, {},
+                [member](const C& cure, Writer& out) { controller_contract().write(Controller(*(cure.*member)), out); },
+                one_of(controller_contract()).schema, sentence, {},
+                [member](const C& cure) { return !(cure.*member); });
+        };
+        pid("settings", &C::settings, "The new settings; left out if the record does not suffice for them.");
+        pid("today", &C::today, "Today's settings, as the record shows them.");
+        d.field("plant", &C::plant, only_answered(maybe(one_of(plant_contract()))), "The identified plant.")
+            .field("worst_Ms", &C::worst_Ms, figure(), "The largest Ms on the plants that fit the record.")
+            .field("error_ratio", &C::error_ratio, figure(),
+                   "Mean magnitude of the error in the recorded time, with the new settings over that of the record.")
+            .field("test", &C::test, only_answered(maybe(answer(test_plan_contract()))),
+                   "The test to make; without settings.")
+            .field("detail", &C::detail, words(), "A sentence.")
+            .why_null("There are no settings.");
+        return d;
+    }();
+    return description;
+}
+
 Codec<std::vector<float>> short_numbers() {
     Codec<std::vector<float>> codec;
     codec.read = [](const Json& value, std::vector<float>& target, Reader& reader) {
@@ -220,7 +270,8 @@ const Description<Shape>& shape_contract() {
             .field("set_point", &Shape::set_point, short_numbers(), "Means of even stretches, in standard deviations.")
             .field("output", &Shape::output, short_numbers(), "Means of even stretches, in standard deviations.")
             .field(
-                "nonlinearity", [](const Json& value, Shape& shape, Reader&) { shape.nonlinearity = value.get<float>(); },
+                "nonlinearity",
+                [](const Json& value, Shape& shape, Reader&) { shape.nonlinearity = value.get<float>(); },
                 [](const Shape& shape, Writer& out) { out.number(double(shape.nonlinearity)); }, number().schema,
                 "How far the wave is from a linear one.");
         return d;
@@ -282,17 +333,20 @@ Codec<ActionCode> check_action() {
                                {"test", test}});
 }
 
-const Description<LoopCheck>& loop_check_contract() {
+const Description<CheckedLoop>& loop_check_contract() {
     static const auto description = [] {
-        using L = LoopCheck;
+        using L = CheckedLoop;
         Description<L> d("LoopCheck", "What a loop's record says about it.");
         d.field("tag", &L::tag, words(), "Its name.")
             .field("quality", &L::quality, answer(quality_contract()), "The record; it comes before every diagnosis.")
             .field("service", &L::service, answer(service_contract()), "For what share of the time it was controlled.")
             .field("oscillation", &L::oscillation, answer(oscillation_contract()), "Whether the error oscillates.")
             .field("cause", &L::cause, answer(cause_contract()), "Why the loop is as it is.")
-            .field("performance", &L::performance, answer(loop_performance_contract()), "How much error and output move.")
+            .field("performance", &L::performance, answer(loop_performance_contract()),
+                   "How much error and output move.")
             .field("action", &L::action, answer(action_contract()), "What to do first.")
+            .field("cure", &L::cure, only_answered(maybe(answer(cure_contract()))),
+                   "New settings, or the test that is missing, where tuning is the cause and settings were asked for.")
             .field("weight", &L::weight, only_answered(maybe(number())), "As in the request.")
             .field("trend", &L::trend, answer(trend_contract()), "The whole record, as extremes of even stretches.")
             .field("excerpt", &L::excerpt, answer(trend_contract()), "Its last periods.")

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "api/describe/description.h"
-#include "engine/check/loop_check.h"
+#include "engine/request/check/ask_check.h"
 
 namespace tunewright::api {
 
-const Description<check::LoopCheck>& loop_check_contract();
+const Description<CheckedLoop>& loop_check_contract();
 
 Codec<check::Verdict> check_verdict();
 Codec<check::ActionCode> check_action();

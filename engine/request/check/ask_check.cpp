@@ -1,6 +1,5 @@
 #include "engine/request/check/ask_check.h"
 
-#include <atomic>
 #include <mutex>
 #include <optional>
 
@@ -31,19 +30,27 @@ private:
 
 }  // namespace
 
+check::PlantCheck judged_together(const std::vector<CheckedLoop>& loops, bool cluster) {
+    std::vector<const check::LoopCheck*> all;
+    for (const CheckedLoop& loop : loops) all.push_back(&loop);
+    return check::check_plant(all, cluster);
+}
+
 Expected<CheckResult> ask_check(const CheckQuestion& question, const RunControl& control) {
     const std::size_t n = question.loops.size();
-    std::vector<std::optional<check::LoopCheck>> done(n);
+    std::vector<std::optional<CheckedLoop>> done(n);
     std::vector<std::optional<Error>> failed(n);
     LoopsProgress progress(control, n);
     parallel_for(control.spread, static_cast<int>(n), [&](int i) {
         const auto at = static_cast<std::size_t>(i);
         if (control.stop.stop_requested()) return;
         auto found = check::check_loop(question.loops[at], control.stop);
-        if (found)
-            done[at] = std::move(*found);
-        else
+        if (found) {
+            done[at].emplace(CheckedLoop{std::move(*found), {}});
+            if (question.settings) done[at]->cure = cure_of(question.loops[at], *done[at], control);
+        } else {
             failed[at] = found.error();
+        }
         progress.one_done();
     });
     CheckResult result;
@@ -54,15 +61,15 @@ Expected<CheckResult> ask_check(const CheckQuestion& question, const RunControl&
             return *failed[i];
         }
         reached += done[i] ? 1 : 0;
-        result.loops.push_back(done[i] ? std::move(*done[i])
-                                       : check::unreadable_loop(question.loops[i].tag,
-                                                                "The check was stopped before this loop was reached."));
+        result.loops.push_back(
+            done[i] ? std::move(*done[i])
+                    : CheckedLoop{check::unreadable_loop(question.loops[i].tag,
+                                                         "The check was stopped before this loop was reached."),
+                                  {}});
     }
     if (reached == 0 && n > 0) return Error{ErrorKind::cancelled, "", "The check was stopped."};
     result.partial = reached < n;
-    std::vector<const check::LoopCheck*> all;
-    for (const auto& loop : result.loops) all.push_back(&loop);
-    result.plant = check::check_plant(all, question.cluster);
+    result.plant = judged_together(result.loops, question.cluster);
     return result;
 }
 

@@ -1,26 +1,34 @@
 // The check of one or many loops, with the judgement of all together.
 #pragma once
 
-#include <functional>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "engine/check/loop_check.h"
 #include "engine/check/plant_check.h"
 #include "engine/progress.h"
+#include "engine/request/check/cure.h"
 
 namespace tunewright {
 
 struct CheckQuestion {
     std::vector<check::LoopQuestion> loops;
-    bool cluster = true;  ///< look for loops that oscillate together
+    bool cluster = true;    ///< look for loops that oscillate together
+    bool settings = false;  ///< look for new settings where tuning is the cause: up to some seconds a loop
+};
+
+struct CheckedLoop : check::LoopCheck {
+    std::optional<LoopCure> cure;  ///< where tuning is the cause, if settings are asked for
 };
 
 struct CheckResult {
-    std::vector<check::LoopCheck> loops;  ///< in the order of the question
+    std::vector<CheckedLoop> loops;  ///< in the order of the question
     check::PlantCheck plant;
     bool partial = false;  ///< stopped: the loops that were not reached are insufficient_data
 };
+
+/// The judgement of all loops together.
+check::PlantCheck judged_together(const std::vector<CheckedLoop>& loops, bool cluster);
 
 /// Errors: those of check_loop(), with the loop's place before `where`; a stop before the first loop.
 Expected<CheckResult> ask_check(const CheckQuestion& question, const RunControl& control);

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <optional>
+#include <random>
 #include <stop_token>
 #include <vector>
 

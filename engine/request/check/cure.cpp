@@ -1,0 +1,82 @@
+#include "engine/request/check/cure.h"
+
+#include <utility>
+
+#include "engine/number_text.h"
+#include "engine/request/recorded_controller.h"
+#include "engine/request/tune.h"
+#include "engine/tuning/limits.h"
+
+namespace tunewright {
+namespace {
+
+LoopCure with_test(const check::LoopCheck& check, const std::string& why, std::optional<IdealPid> today) {
+    LoopCure cure;
+    cure.today = std::move(today);
+    cure.test = plan_test(check);
+    cure.detail = why + " " + cure.test->detail;
+    cure.worst_Ms = cure.error_ratio = no_figure("There are no settings before the test.");
+    return cure;
+}
+
+/// The entry of the design: the first that is not today's settings, with an evaluation.
+const TuningEntry* design_of(const TuningResult& result) {
+    for (const int i : result.ranking) {
+        const TuningEntry& entry = result.controllers[static_cast<std::size_t>(i)];
+        if (!entry.is_baseline() && entry.evaluation) return &entry;
+    }
+    return nullptr;
+}
+
+/// True if the limit holds on every plant that fits the record.
+bool holds_on_region(const TuningEntry& entry) {
+    const auto worst = worst_Ms(entry);
+    return worst && !worst->exceeds(entry.Ms_limit.value_or(limits::kDefaultMs));
+}
+
+LoopCure with_settings(const TuningResult& result, const TuningEntry& entry, std::optional<IdealPid> today) {
+    LoopCure cure;
+    cure.today = std::move(today);
+    cure.settings = std::get<IdealPid>(entry.evaluation->controller);
+    if (result.model) cure.plant = result.model->plant;
+    if (const auto worst = worst_Ms(entry)) cure.worst_Ms = worst->value;
+    if (entry.replay && !entry.replay->refused)
+        cure.error_ratio = entry.replay->IAE_ratio;
+    else
+        cure.error_ratio = no_figure(entry.replay ? reason_of(*entry.replay->refused) : "The record has no set point.");
+    cure.detail =
+        "The record shows the plant: with the new settings Ms stays within its limit on every plant that fits "
+        "the record.";
+    if (cure.error_ratio)
+        cure.detail += " In the recorded time the mean error would have been " + figure_text(*cure.error_ratio) +
+                       " times as large.";
+    return cure;
+}
+
+}  // namespace
+
+std::optional<LoopCure> cure_of(const check::LoopQuestion& question, const check::LoopCheck& check,
+                                const RunControl& control) {
+    if (check.action.code != check::ActionCode::retune && check.action.code != check::ActionCode::test)
+        return std::nullopt;
+    TuningRequest request;
+    request.record = question.record;
+    if (question.u_range) request.record->u_limits = question.u_range;
+    request.evaluate.points = 0;
+    std::optional<IdealPid> today;
+    if (auto recorded = recorded_controller(*request.record, nullptr)) {
+        today = recorded->found.pid;
+        request.baseline = GivenController(*today);
+    }
+    const auto result = tune(request, {control.stop, nullptr, control.now_ms});
+    if (!result) return with_test(check, result.error().message, std::move(today));
+    const TuningEntry* entry = design_of(*result);
+    if (entry == nullptr || !std::holds_alternative<IdealPid>(entry->evaluation->controller))
+        return with_test(check, "No design holds its limits on the plants that fit this record.", std::move(today));
+    if (!holds_on_region(*entry))
+        return with_test(check, "The record leaves the plant so open that no settings are safe on all that fit it.",
+                         std::move(today));
+    return with_settings(*result, *entry, std::move(today));
+}
+
+}  // namespace tunewright

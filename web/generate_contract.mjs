@@ -22,7 +22,7 @@ const OPEN = { Plant: "type", PlantModel: "type", Method: "method" };
 
 /** Types with figures of which the page shows the units. */
 const MEASURED = [
-  "CheckedRecord", "DataQuality", "IdealController", "LoadPerformance", "LoopCause", "LoopPerformance", "LoopPeriod", "LoopRank", "MissingPart",
+  "CheckTest", "CheckedRecord", "DataQuality", "IdealController", "LoadPerformance", "LoopCause", "LoopPerformance", "LoopPeriod", "LoopRank", "MissingPart",
   "NonlinearController", "OwnLoad", "OwnLoadFigures", "OwnSetpointFigures", "OwnStep", "OwnStepEntry", "PreTest", "ReplayFigures", "Robustness", "SetpointPerformance",
 ];
 

@@ -1,7 +1,7 @@
 // Loops in operation: a check as a job, started, followed and stopped.
 import { call, sentenceOf, waitAfter } from "./client.ts";
 import { untilEnd } from "./events.ts";
-import type { CheckJob, CheckRequest, Progress } from "./types.ts";
+import type { CheckJob, CheckLoop, CheckRequest, CheckResult, LoopCure, Progress, Units } from "./types.ts";
 import { isFinal } from "./types.ts";
 
 /** The same criterion as the service's for requests of POST /v1/jobs. */
@@ -13,6 +13,13 @@ export const postCheck = async (body: Blob): Promise<CheckJob> => (await call("P
 
 export const getCheck = async (id: string, signal?: AbortSignal): Promise<CheckJob> =>
   (await call("GET", `v1/jobs/${encodeURIComponent(id)}`, undefined, {}, signal)).data as CheckJob;
+
+/** New settings for a loop whose cause is its tuning, or the test that is missing; null if tuning is not the cause. */
+export async function cureOf(loop: CheckLoop, units: Units | undefined, signal: AbortSignal): Promise<LoopCure | null> {
+  const request: CheckRequest = { ...(units ? { units } : {}), loops: [loop], cluster: false, settings: true };
+  const { loops } = (await call("POST", "v1/check", request, {}, signal)).data as CheckResult;
+  return loops[0]?.cure ?? null;
+}
 
 const LOOK_AGAIN_MS = 1000;
 

@@ -1082,6 +1082,7 @@ export type components = {
       units?: components["schemas"]["Units"];
       loops: components["schemas"]["CheckLoop"][];
       cluster?: boolean;
+      settings?: boolean;
       timeout_s?: number;
       priority?: "normal" | "low";
       not_before?: string;
@@ -1129,6 +1130,7 @@ export type components = {
       cause: components["schemas"]["LoopCause"];
       performance: components["schemas"]["LoopPerformance"];
       action: components["schemas"]["CheckAction"];
+      cure?: components["schemas"]["LoopCure"];
       weight?: number;
       trend: components["schemas"]["LoopTrend"];
       excerpt: components["schemas"]["LoopTrend"];
@@ -1181,6 +1183,7 @@ export type components = {
       alternatives: ("healthy" | "stiction" | "backlash" | "tight" | "sluggish" | "external" | "saturation" | "quantised" | "manual" | "frozen" | "undetermined" | "insufficient-data")[];
       size: number | null;
       jump: number | null;
+      period: number | null;
       why_open?: string;
       why_null?: {
         [key: string]: string;
@@ -1215,6 +1218,27 @@ export type components = {
     CheckAction: {
       code: "none" | "retune" | "repair-valve" | "find-source" | "return-to-automatic" | "check-range" | "check-transmitter" | "record-again" | "test";
       owner: "nobody" | "control" | "instruments" | "process" | "operations";
+      detail: string;
+    };
+    LoopCure: {
+      settings?: components["schemas"]["Controller"];
+      today?: components["schemas"]["Controller"];
+      plant?: components["schemas"]["Plant"];
+      worst_Ms: number | null;
+      error_ratio: number | null;
+      test?: components["schemas"]["CheckTest"];
+      detail: string;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    CheckTest: {
+      kind: "set-point-steps" | "output-steps";
+      size: number;
+      steps: number;
+      hold: number;
+      duration: number;
+      beyond_seen: boolean;
       detail: string;
     };
     LoopTrend: {
@@ -1825,6 +1849,8 @@ export type CheckEvidence = components['schemas']['CheckEvidence'];
 export type LoopPerformance = components['schemas']['LoopPerformance'];
 export type HarrisRange = components['schemas']['HarrisRange'];
 export type CheckAction = components['schemas']['CheckAction'];
+export type LoopCure = components['schemas']['LoopCure'];
+export type CheckTest = components['schemas']['CheckTest'];
 export type LoopTrend = components['schemas']['LoopTrend'];
 export type CheckCurve = components['schemas']['CheckCurve'];
 export type LoopShape = components['schemas']['LoopShape'];

@@ -33,6 +33,7 @@ export type {
   LimitCycle,
   LoopCheck,
   LoopCluster,
+  LoopCure,
   LoopRank,
   LoopTrend,
   Model,

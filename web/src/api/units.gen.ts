@@ -1,5 +1,9 @@
 // Made by generate_contract.mjs from the service's /openapi.json; not to be edited.
 export const UNITS = {
+  CheckTest: {
+    hold: "time",
+    duration: "time",
+  },
   CheckedRecord: {
     sample_time: "time",
     duration: "time",
@@ -33,6 +37,7 @@ export const UNITS = {
   LoopCause: {
     size: "u",
     jump: "u",
+    period: "time",
   },
   LoopPerformance: {
     variability: "y",

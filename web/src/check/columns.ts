@@ -106,7 +106,7 @@ export function workColumns(rows: readonly WorkRow[], units: UnitNames): WorkCol
     { ...wordsColumn("cause", "Cause", causeText, causeOrder), about: "cause" },
     wordsColumn("action", "What to do", ({ loop }) => actionWords(loop.action.code)),
     wordsColumn("owner", "Owner", ({ loop }) => ownerWords(loop.action.owner)),
-    figures("gain", "Gain", "mending_gain", ({ standing }) => standing.share, estimate, why("share")),
+    figures("gain", "Gain (%)", "mending_gain", ({ standing }) => standing.share, estimate, why("share")),
     ...(weighed ? [figures("money", "Money per hour", "mending_money", ({ standing }) => standing.money, shortNumber, why("money"))] : []),
     { ...figures("effort", "Effort", null, ({ standing }) => standing.effort, effortWords), words: true, falls: false },
     figures("period", withUnit("Period", units.time), "period", ({ loop }) => loop.oscillation.period, shortNumber, () => NO_OSCILLATION),
@@ -159,14 +159,14 @@ function csvText(row: WorkRow, column: WorkColumn): string {
   return value === null ? "" : column.figure(row).text.replaceAll("−", "-");
 }
 
-/** The rows as a table for a spreadsheet. */
-export function workCsv(rows: readonly WorkRow[], columns: readonly WorkColumn[]): string {
-  const head = ["#", nameColumn.label, ...columns.map(({ label }) => label), "First", "Sentence"];
+/** Rows as a table for a spreadsheet; `all`: the whole list, with loops to mend before them. */
+export function workCsv(rows: readonly WorkRow[], columns: readonly WorkColumn[], all: readonly WorkRow[]): string {
+  const head = ["#", nameColumn.label, ...columns.map(({ label }) => label), "Mend first", "Sentence"];
   const lines = rows.map((row) => [
     String(row.rank),
     row.loop.tag,
     ...columns.map((column) => csvText(row, column)),
-    mendedBefore(row, rows)?.loop.tag ?? "",
+    mendedBefore(row, all)?.loop.tag ?? "",
     row.loop.action.detail,
   ]);
   return [head, ...lines].map((line) => `${line.map(quoted).join(",")}\r\n`).join("");

@@ -1,16 +1,33 @@
 // A checked loop on a page of its own: cause and evidence, what to do, its pictures and figures; and the way to the next
 // loop of the work list.
-import type { LoopCheck } from "../api/types.ts";
+import type { CheckLoop, LoopCheck, Units } from "../api/types.ts";
 import { loopFrames } from "../charts/loop_check.ts";
 import { h } from "../dom.ts";
 import { plotGrid } from "../plot/grid.ts";
+import { cureCard } from "./cure_card.ts";
 import { actionCard, causeCard, figuresCard } from "./loop_cards.ts";
 import type { LoopShown } from "./loop_cards.ts";
 
+/** Where a loop is in the work list. */
+export interface LoopWays {
+  /** Places of the loops in the order of the work list. */
+  order: readonly number[];
+  /** The address of the work list. */
+  list: string;
+}
+
+/** The loop as it was sent, with what can be done with its record. */
+export interface SentLoop {
+  loop: CheckLoop | null;
+  units: Units | undefined;
+  steps: HTMLElement[];
+}
+
 export interface LoopView {
   element: HTMLElement;
-  /** `order`: places of the loops in the order of the work list; `list`: its address. `steps`: links with the record. */
-  show(shown: LoopShown, order: readonly number[], list: string, steps: HTMLElement[]): void;
+  show(shown: LoopShown, ways: LoopWays, sent: SentLoop): void;
+  /** It is not on the screen any more. */
+  leave(): void;
   dispose(): void;
 }
 
@@ -20,6 +37,7 @@ export function loopView(announce: (sentence: string) => void): LoopView {
   const after = h("a", { href: "#/check" });
   const at = h("span", { class: "hint" });
   const cards = h("div", { class: "loop-cards" });
+  const cure = cureCard(announce);
   const side = h("div", { class: "loop-side" });
   const plots = plotGrid(announce);
   const element = h(
@@ -27,6 +45,7 @@ export function loopView(announce: (sentence: string) => void): LoopView {
     { class: "check-loop" },
     h("nav", { class: "loop-ways", "aria-label": "Loops" }, back, before, at, after),
     cards,
+    cure.element,
     h("div", { class: "loop-body" }, plots.element, side),
   );
 
@@ -47,17 +66,22 @@ export function loopView(announce: (sentence: string) => void): LoopView {
 
   return {
     element,
-    show(shown, order, list, steps) {
+    show(shown, { order, list }, sent) {
       const { loop, place } = shown.row;
       const index = order.indexOf(place);
       back.href = list;
       lead(before, "‹ Previous", index < 0 ? undefined : order[index - 1], shown);
       lead(after, "Next ›", index < 0 ? undefined : order[index + 1], shown);
       at.textContent = index < 0 ? "not in the list as filtered" : `${index + 1} of ${order.length}`;
-      cards.replaceChildren(causeCard(shown), actionCard(shown, steps));
+      cards.replaceChildren(causeCard(shown), actionCard(shown, sent.steps));
       side.replaceChildren(figuresCard(shown));
       draw(loop, shown);
+      cure.show(loop, sent.loop, sent.units);
     },
-    dispose: plots.dispose,
+    leave: cure.dispose,
+    dispose() {
+      cure.dispose();
+      plots.dispose();
+    },
   };
 }

@@ -92,5 +92,5 @@ export function periodMap(content: CheckContent, address: (place: number) => str
     ),
     bodies,
   );
-  return h("div", { class: "scroll work-scroll", role: "region", "aria-label": "Map of periods", tabindex: 0 }, table);
+  return h("div", { class: "scroll work-scroll", role: "region", "aria-label": "Loops over their periods", tabindex: 0 }, table);
 }

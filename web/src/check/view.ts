@@ -3,7 +3,7 @@ import { followCheck, isCheckRequest, getCheck, postCheck } from "../api/check.t
 import { sentenceOf } from "../api/client.ts";
 import { cancelJob } from "../api/jobs.ts";
 import { maxBodyBytes } from "../api/records.ts";
-import type { CheckJob, CheckRequest, IdentifyRequest } from "../api/types.ts";
+import type { CheckJob, CheckRequest, IdentifyRequest, LoopCheck } from "../api/types.ts";
 import { isFinal } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
@@ -19,6 +19,7 @@ import type { CheckContent } from "./columns.ts";
 import { earlierChecks } from "./earlier.ts";
 import { checkForm, tooLong } from "./form.ts";
 import { loopView } from "./loop_view.ts";
+import type { SentLoop } from "./loop_view.ts";
 import { checkProgress } from "./progress_bar.ts";
 import { recordOf } from "./request.ts";
 import { workList } from "./work_list.ts";
@@ -151,7 +152,12 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
     const found = content();
     const row = found && route.loop !== null ? workRows(found).find(({ place }) => place === route.loop) : undefined;
     if (part === loop.element && found && row)
-      loop.show({ content: found, row, units: unitNames(found.units), address: addressOf }, list.order(), formatRoute({ ...route, loop: null }), steps(route.loop!));
+      loop.show(
+        { content: found, row, units: unitNames(found.units), address: addressOf },
+        { order: list.order(), list: formatRoute({ ...route, loop: null }) },
+        sentLoop(row.loop, row.place),
+      );
+    else loop.leave();
     if (part === progress.element && job) progress.show(job);
     if (part === loop.element && !row) {
       loop.element.hidden = true;
@@ -177,17 +183,16 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
     document.title = `${route.of === null ? "" : `${text} · `}Check · Tunewright`;
   }
 
-  /** What the engineer can go on with: the record of a loop to tune. */
-  function steps(place: number): HTMLElement[] {
-    const sent = job?.request?.loops[place];
-    if (!sent) return [];
-    const { tag, action } = content()!.loops[place]!;
+  /** The loop as it was sent, and what the engineer can go on with. */
+  function sentLoop({ tag, action }: LoopCheck, place: number): SentLoop {
+    const sent = job?.request?.loops[place] ?? null;
     const units = job?.request?.units;
+    if (!sent) return { loop: null, units, steps: [] };
     const test: IdentifyRequest = { name: tag, ...(units ? { units } : {}), record: recordOf(sent) };
     const first = action.code === "retune";
     const identify = h("button", { type: "button", class: first ? "primary" : null, onclick: () => events.onIdentify(test) }, "Identify from this record");
     const tune = h("button", { type: "button", onclick: () => void events.onTune(test).catch(complain) }, "Design from this record");
-    return first ? [identify, tune] : [identify];
+    return { loop: sent, units, steps: first ? [identify, tune] : [identify] };
   }
 
   async function fill(from: string): Promise<void> {

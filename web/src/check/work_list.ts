@@ -36,7 +36,7 @@ export function workList(announce: (sentence: string) => void, onView: (view: Li
   const element = h(
     "div",
     { class: "check-results" },
-    h("section", { class: "card", "aria-label": "Work list" }, filters.element, table.element),
+    h("section", { class: "card", "aria-label": "Loops" }, filters.element, table.element),
     periods,
     cascades,
   );
@@ -94,7 +94,7 @@ export function workList(announce: (sentence: string) => void, onView: (view: Li
     focus: table.focus,
     sentence: () => countsSentence(rows),
     save(name) {
-      download(new Blob([workCsv(shown, columns)], { type: "text/csv" }), `${name}.csv`);
+      download(new Blob([workCsv(shown, columns, rows)], { type: "text/csv" }), `${name}.csv`);
     },
   };
 }

@@ -81,8 +81,8 @@ export type Tone = "good" | "bad" | "open";
 export const toneOf = ({ verdict, confidence }: Pick<LoopCheck["cause"], "verdict" | "confidence">): Tone =>
   verdict === "healthy" ? "good" : confidence === "open" ? "open" : "bad";
 
-/** An estimate, without decimals: "38 %". */
-export const estimate = (share: number): string => `${Math.round(100 * share)} %`;
+/** A share that is an estimate, in percent without decimals. */
+export const estimate = (share: number): string => String(Math.round(100 * share));
 
 const SCALES = [
   ["h", 3600],
@@ -177,18 +177,19 @@ function recordRows({ quality }: LoopCheck, units: UnitNames): LoopFigure[] {
     .add("Smallest step of the output", null, "u_step", quality.u_step, none, step("u_step")).rows;
 }
 
-/** Size and jump of a valve; without rows if the cause has none. */
-function valveRows({ cause }: LoopCheck, units: UnitNames): LoopFigure[] {
+/** The valve and its cycle; without rows if the cause has none. */
+function causeRows({ cause }: LoopCheck, units: UnitNames): LoopFigure[] {
   return new Rows(units, "LoopCause", cause.why_null)
     .add(cause.verdict === "backlash" ? "Width of the backlash" : "Dead band and stick", "valve_size", "size", cause.size)
     .add("Jump when it breaks loose", "valve_jump", "jump", cause.jump)
+    .add("Period of its cycle", null, "period", cause.period)
     .rows.filter(({ text }) => text !== DASH);
 }
 
 /** All figures of a loop except its oscillations. */
 export const loopFigures = (loop: LoopCheck, units: UnitNames): LoopFigures[] =>
   [
-    { title: "Valve", rows: valveRows(loop, units) },
+    { title: "Cause", rows: causeRows(loop, units) },
     { title: "Error and output", rows: performanceRows(loop, units) },
     { title: "Service", rows: serviceRows(loop, units) },
     { title: "Record", rows: recordRows(loop, units) },
@@ -202,5 +203,5 @@ export const periodText = ({ period, period_error }: LoopCheck["oscillation"]["p
 export function gainWords(rank: LoopRank, loop: LoopCheck, units: UnitNames): string {
   if (typeof rank.share !== "number" || typeof rank.gain !== "number") return "";
   const unit = units.y ? ` ${units.y}` : "";
-  return `${estimate(rank.share)}: ${formatNumber(rank.gain)}${unit} of a mean error of ${formatNumber(loop.performance.mean_error)}${unit}`;
+  return `${estimate(rank.share)} %: ${formatNumber(rank.gain)}${unit} of a mean error of ${formatNumber(loop.performance.mean_error)}${unit}`;
 }

@@ -78,6 +78,7 @@ export const EXPLANATIONS = {
   measurement_still: { title: "Measurement at rest", text: "The share of the time in long parts in which the measurement stayed at one value while the output moved. A frozen transmitter, a blocked line, or a historian that stores too little.", more: CHECK },
   held: { title: "Repeated measurements", text: "The share of rows whose measurement is that of the row before. A large share means that the historian stores only larger changes, or that the measurement comes in coarse steps.", more: CHECK },
   noise: { title: "Noise of the measurement", text: "The standard deviation of the measurement from row to row, without slower movements. The controller passes it on to the valve.", more: CHECK },
+  error_ratio: { title: "Mean error, new over old", text: "The mean magnitude of the error in the recorded time with the new settings, over that of the record. It is computed on the identified plant with the set points and disturbances of the record: 0.6 means that four tenths of the error would not have been there.", more: CHECK },
   valve_size: { title: "Dead band and stick", text: "How far the controller output moves before the valve follows, in the unit of the output. The oscillation lasts as long as this band is there; settings only change its period.", more: CHECK },
   valve_jump: { title: "Jump when it breaks loose", text: "How far the valve jumps when it overcomes its friction, in the unit of the output. With a jump of 0 the valve has play, but does not stick.", more: CHECK },
 } as const satisfies Record<string, Explanation>;

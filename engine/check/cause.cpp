@@ -7,6 +7,7 @@
 #include "engine/check/hysteresis.h"
 #include "engine/check/loop_law.h"
 #include "engine/check/loop_speed.h"
+#include "engine/check/set_point_response.h"
 #include "engine/check/thresholds.h"
 #include "engine/check/valve_fit.h"
 #include "engine/identification/record/series.h"
@@ -26,6 +27,12 @@ constexpr double kDeadBandGain = 0.6, kDeadBandExplained = 0.75, kDeadBandLinear
 constexpr double kLeastBandRatio = 0.4, kMostBandRatio = 1.1;
 constexpr double kPartGain = 0.28, kPartExplained = 0.4, kPartLinear = 0.65, kPartLeast = 0.55, kPartMost = 1;
 constexpr int kPartTurns = 3;
+constexpr double kPerhapsBand = 0.2;
+// A linear loop with a dead time that is resolved explains the record: no dead band is needed.
+constexpr double kInformed = 35, kQuickByDeadTime = 0.15, kLeastPaceSeen = 0.22, kMostPaceSeen = 0.7;
+constexpr double kSlowCrossover = 0.7, kForward = 0.6, kBeyondRounding = 3;
+constexpr double kCyclesInTi[] = {3, 6};                 // a limit cycle of a PI loop lasts some integral times
+constexpr double kShortestCycle = 8, kFewestCycles = 6;  // rows; cycles in the record
 constexpr std::size_t kCrossingBlocks = 200;
 
 std::string percent(double share) { return figure_text(100 * share) + " %"; }
@@ -42,6 +49,7 @@ public:
         if (auto found = by_valve()) return *found;
         if (auto found = by_dead_band()) return *found;
         if (auto found = by_oscillation()) return *found;
+        if (auto found = by_set_point()) return *found;
         if (auto found = by_what_is_missing()) return *found;
         return by_speed();
     }
@@ -89,16 +97,13 @@ private:
         peak_ = by_output ? output_ : of_error_;
         other_ = by_output ? of_error_ : output_;
         same_ = of_error_.period > 0 && std::abs(output_.period / of_error_.period - 1) < kSamePeriod;
-        line_ = same_ ? std::min(output_.line, of_error_.line) : 0;
+        drifts_ = std::min(output_.spread, of_error_.spread) >= kDrifts;
+        line_ = same_ && !drifts_ ? std::min(output_.line, of_error_.line) : 0;
         candidates_ = {{peak_.period, peak_.line_period, line_}};
         if (!(peak_.regularity > kClearlyRegular && peak_.share > kClearShare)) {
             for (const Peak& more : {other_, strongest_peak(std::span(q_.samples.u).subspan(skip), kSlowTilt),
-                                     strongest_peak(std::span(error_).subspan(skip), kSlowTilt)}) {
-                const bool known = more.period <= 0 || std::ranges::any_of(candidates_, [&](const PeriodCandidate& c) {
-                                       return std::abs(std::log(more.period / c.period)) <= kOtherPeriod;
-                                   });
-                if (!known) candidates_.push_back({more.period, more.line_period, 0});
-            }
+                                     strongest_peak(std::span(error_).subspan(skip), kSlowTilt)})
+                add_candidate({more.period, more.line_period, 0});
         }
         if (peak_.regularity > kRegular)
             add("regularity", peak_.regularity, kRegular,
@@ -141,9 +146,28 @@ private:
         return cause(Verdict::quantised, Confidence::sure);
     }
 
-    std::optional<Cause> by_valve() {
+    void add_cycles_of_law() {
         law_ = loop_law(error_, q_.samples.u, q_.samples.step);
         sign_ = law_.gain < 0 ? -1 : 1;
+        if (peak_.regularity > kClearlyRegular && peak_.share > kClearShare) return;
+        if (!(law_.explained > 0.5 && std::isfinite(law_.Ti) && law_.Ti > 0)) return;
+        for (const double cycles : kCyclesInTi) {
+            const double period = cycles * law_.Ti / q_.samples.step;
+            if (period >= kShortestCycle && period <= double(q_.samples.size()) / kFewestCycles)
+                add_candidate({period, period, 0});
+        }
+    }
+
+    void add_candidate(const PeriodCandidate& more) {
+        if (!(more.period > 0)) return;
+        const bool known = std::ranges::any_of(candidates_, [&](const PeriodCandidate& c) {
+            return c.period > 0 && std::abs(std::log(more.period / c.period)) <= kOtherPeriod;
+        });
+        if (!known) candidates_.push_back(more);
+    }
+
+    std::optional<Cause> by_valve() {
+        add_cycles_of_law();
         bank_.emplace(q_.samples.u, peak_.period);
         measurement_ = error_;
         for (double& value : measurement_) value = -value;
@@ -172,16 +196,18 @@ private:
     }
 
     std::optional<Cause> by_dead_band() {
-        const auto fit = fit_hysteresis(q_.samples.y, *bank_, peak_.period);
+        const auto fit = fit_hysteresis(q_.samples.y, q_.samples.r, *bank_, peak_.period);
         const bool line = line_ >= kLine && peak_.cycles >= 8;
         if (!fit || fit->plant_gain * sign_ <= 0 || line || fit->turns < 2) return std::nullopt;
-        const bool clear = fit->explained >= kDeadBandExplained && fit->gain >= kDeadBandGain &&
+        const bool in_range = fit->ratio >= kLeastBandRatio && fit->ratio <= kMostBandRatio;
+        if (fit->gain >= kPerhapsBand && in_range && !linear_loop()) perhaps_band_ = fit->gain;
+        const bool clear = fit->explained >= kDeadBandExplained && fit->gain >= kDeadBandGain && in_range &&
                            fit->ratio >= kLeastBandRatio && fit->ratio <= kMostBandRatio &&
                            fit->explained_without < kDeadBandLinear;
         const bool in_part = fit->gain >= kPartGain && fit->explained_without < kPartLinear &&
                              fit->ratio >= kPartLeast && fit->ratio <= kPartMost && fit->turns >= kPartTurns &&
                              fit->explained >= kPartExplained;
-        if (!clear && !in_part) return std::nullopt;
+        if ((!clear && !in_part) || linear_loop()) return std::nullopt;
         add("dead-band", fit->explained, {},
             "The measurement follows the output only through a dead band: with it the output explains " +
                 percent(fit->explained) + " of the measurement, without it " + percent(fit->explained_without) + ".");
@@ -201,8 +227,10 @@ private:
             out.period = peak_.line_period * q_.samples.step;
             return out;
         }
-        if (peak_.regularity >= kResonant && peak_.persistence >= kPersistent && peak_.cycles >= kCyclesOfResonance &&
-            line_ < kLine) {
+        const bool resonant =
+            (peak_.regularity >= kResonant && peak_.persistence >= kPersistent && peak_.cycles >= kCyclesOfResonance) ||
+            (peak_.regularity >= kLongResonant && peak_.persistence >= kLongPersistent && peak_.cycles >= kLongCycles);
+        if (resonant && drifts_) {
             add("resonance", peak_.persistence, kPersistent,
                 "After three periods the oscillation still has a correlation of " + figure_text(peak_.persistence) +
                     " with itself, its phase drifts, and no valve explains it: the loop itself hardly damps it.");
@@ -255,12 +283,30 @@ private:
         return double(free) / double(r.size());
     }
 
+    /// Moves of the set point show by themselves how quick the loop is.
+    std::optional<Cause> by_set_point() {
+        const auto response = set_point_response(q_.samples);
+        if (!response || response->dead_time < 2 * q_.samples.step || response->noise > kClearResponse)
+            return std::nullopt;
+        const double ratio = response->rise / response->dead_time;
+        add("set-point-response", ratio, kSluggishRise,
+            "After " + std::to_string(response->moves) + " moves of the set point the measurement needs " +
+                figure_text(response->rise) + " to 63 %, " + figure_text(ratio) +
+                " times the time until it begins; a loop tuned for its dead time needs 1 to 2 times.");
+        if (ratio < kSluggishRise) return std::nullopt;
+        return cause(Verdict::sluggish,
+                     response->moves > 1 && ratio > 1.5 * kSluggishRise ? Confidence::sure : Confidence::likely);
+    }
+
     std::optional<Cause> by_what_is_missing() {
-        const int found = crossings();
-        if (found < kFewestCrossings)
-            return open("The error changes its sign only " + std::to_string(found) +
-                            " times: the record is short against this loop. Record for several times as long.",
-                        {Verdict::sluggish, Verdict::stiction});
+        if (crossings() < 2) return few_crossings();
+        if (perhaps_band_ > 0)
+            return open(
+                "A dead band of the valve would explain the measurement better, but the valve turns too seldom to "
+                "prove it. A longer record tells.",
+                {Verdict::stiction, Verdict::healthy, Verdict::sluggish});
+        if (std::ranges::any_of(evidence_, [](const Evidence& e) { return e.code == "set-point-response"; }))
+            return cause(Verdict::healthy, Confidence::likely);
         const double free = free_of_moves();
         const bool moves = !q_.samples.r.empty() && deviation(q_.samples.r) > 1.5 * deviation(error_);
         if (free < kFreeOfMoves && moves)
@@ -271,41 +317,69 @@ private:
         return std::nullopt;
     }
 
+    Cause few_crossings() const {
+        return open("The error changes its sign only " + std::to_string(crossings()) +
+                        " times: the record is short against this loop. Record for several times as long.",
+                    {Verdict::sluggish, Verdict::stiction});
+    }
+
+    const std::optional<LoopSpeed>& speed() {
+        if (asked_speed_) return speed_;
+        asked_speed_ = true;
+        if (!(law_.explained >= kKnownLaw && std::isfinite(law_.Ti) && law_.Ti > 0)) return speed_;
+        std::vector<double> y(q_.samples.y);
+        for (double& value : y) value *= sign_;
+        speed_ = loop_speed(y, q_.samples.u, std::abs(law_.gain), law_.Ti, q_.samples.step, stop_);
+        return speed_;
+    }
+
+    bool linear_loop() {
+        const auto& found = speed();
+        return found && found->information >= kInformed && found->by_dead_time < kQuickByDeadTime &&
+               found->pace >= kLeastPaceSeen && found->pace <= kMostPaceSeen;
+    }
+
+    /// Rounding of the output moves the fit where only the dead time speaks.
+    bool tells_slow(const LoopSpeed& found) const {
+        const bool by_crossover = found.crossover_Ti < kSlowCrossover;
+        const bool by_dead_time =
+            found.by_dead_time >= kSurelySlow && noise_std(q_.samples.u) >= kBeyondRounding * q_.quality.u_step;
+        return (by_crossover || by_dead_time) && found.load_steps > 0 && found.forward >= kForward &&
+               found.dead_time > 0.8 * found.resolution;
+    }
+
     Cause by_speed() {
-        std::optional<LoopSpeed> speed;
-        if (law_.explained >= kKnownLaw && std::isfinite(law_.Ti) && law_.Ti > 0) {
-            std::vector<double> y(q_.samples.y);
-            for (double& value : y) value *= sign_;
-            speed = loop_speed(y, q_.samples.u, std::abs(law_.gain), law_.Ti, q_.samples.step, stop_);
-        }
-        if (speed) {
-            add("pace", speed->pace, {},
-                "Crossover frequency times dead time is about " + figure_text(speed->pace) +
+        const auto& found = speed();
+        if (found) {
+            add("pace", found->pace, {},
+                "Crossover frequency times dead time is about " + figure_text(found->pace) +
                     ": 0.5 is quick, below 0.19 the loop is slower than its dead time asks.");
-            if (speed->slow >= kSlow && speed->load_steps > 0 && speed->dead_time > 0.8 * speed->resolution) {
-                add("slow", speed->slow, kSlow,
-                    "By the reaction to " + std::to_string(speed->load_steps) +
-                        " steps of the load the loop is sluggish with a "
-                        "likelihood of " +
-                        percent(speed->slow) + ".");
+            if (found->slow >= kSlow && tells_slow(*found)) {
+                add("slow", found->slow, kSlow,
+                    "By the reaction to " + std::to_string(found->load_steps) +
+                        " steps of the load the loop is sluggish with a likelihood of " + percent(found->slow) + ".");
                 return cause(Verdict::sluggish, Confidence::likely, {Verdict::healthy});
             }
         }
+        if (crossings() < kFewestCrossings) return few_crossings();
         add("no-fault", 0, {}, "No oscillation, no limit and no fault of the valve is seen.");
-        const bool doubtful = speed && speed->slow >= kPerhapsSlow;
+        const bool doubtful = !found || found->slow >= kPerhapsSlow;
         return cause(Verdict::healthy, Confidence::likely,
-                     doubtful || !speed ? std::vector{Verdict::sluggish} : std::vector<Verdict>{});
+                     doubtful ? std::vector{Verdict::sluggish} : std::vector<Verdict>{});
     }
 
     const CauseQuestion& q_;
     const std::stop_token& stop_;
     std::vector<double> error_, measurement_;
     Peak output_, of_error_, peak_, other_;
-    bool same_ = false;
+    bool same_ = false, drifts_ = false;
     double line_ = 0, sign_ = 1;
     std::vector<PeriodCandidate> candidates_;
     LoopLaw law_;
     std::optional<ValveBank> bank_;
+    bool asked_speed_ = false;
+    std::optional<LoopSpeed> speed_;
+    double perhaps_band_ = 0;  // gain of a dead band that is not proven
     std::vector<Evidence> evidence_;
 };
 

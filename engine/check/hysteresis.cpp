@@ -100,12 +100,13 @@ int turns(std::span<const double> output, double least) {
 
 }  // namespace
 
-std::optional<HysteresisFit> fit_hysteresis(std::span<const double> measurement, const ValveBank& bank, double period) {
+std::optional<HysteresisFit> fit_hysteresis(std::span<const double> measurement, std::span<const double> set_point,
+                                            const ValveBank& bank, double period) {
     if (bank.valves().empty()) return std::nullopt;
     const auto thinned = bank.thinned(measurement);
     const std::size_t n = std::min(thinned.size(), bank.output().size());
-    const auto block = static_cast<std::size_t>(std::max(
-        1.0, std::min(std::floor(double(n) / kBlocks), period / double(bank.stride()) / kBlocksPerPeriod)));
+    const auto block = static_cast<std::size_t>(
+        std::max(1.0, std::min(std::floor(double(n) / kBlocks), period / double(bank.stride()) / kBlocksPerPeriod)));
     const std::size_t used = std::min(n, 2 * kBlocks * block);
     const auto part = [&](const std::vector<double>& values) {
         return vector(block_means(std::span(values).first(used), block));
@@ -113,7 +114,11 @@ std::optional<HysteresisFit> fit_hysteresis(std::span<const double> measurement,
     const Vector y = part(thinned), u = part(bank.output());
     if (y.size() < Eigen::Index(kBlocks / 2)) return std::nullopt;
     const double variance = (y.array() - y.mean()).square().mean() + 1e-300;
-    const Best linear = without_valve(u, y);
+    Best linear = without_valve(u, y);
+    if (!set_point.empty()) {
+        const Best by_set_point = without_valve(part(bank.thinned(set_point)), y);
+        linear.square = std::min(linear.square, by_set_point.square);
+    }
     Best best;
     for (std::size_t k = 0; k < bank.valves().size(); ++k) {
         const Vector v = part(bank.position(k));
@@ -123,7 +128,8 @@ std::optional<HysteresisFit> fit_hysteresis(std::span<const double> measurement,
     const auto rows = std::span(bank.output()).first(used);
     const auto [low, high] = std::ranges::minmax(rows);
     HysteresisFit fit;
-    fit.gain = std::log((linear.square + 1e-300) / (best.square + 1e-300));
+    const double floor = 1e-12 * variance;
+    fit.gain = std::log((std::max(0.0, linear.square) + floor) / (std::max(0.0, best.square) + floor));
     fit.explained = 1 - best.square / variance;
     fit.explained_without = 1 - linear.square / variance;
     fit.band = valve.band;

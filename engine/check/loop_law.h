@@ -5,8 +5,8 @@
 
 namespace tunewright::check {
 
-/// u(t) - u(t - M) = gain (e(t) - e(t - M) + integral of e over these rows / Ti), by least squares, M from 1 to 30 rows:
-/// differences over several rows bear rounding of the output. identification/controller_law finds the settings
+/// u(t) - u(t - M) = gain (e(t) - e(t - M) + integral of e over these rows / Ti), by least squares, M from 1 to 30
+/// rows: differences over several rows bear rounding of the output. identification/controller_law finds the settings
 /// themselves, with errors, and takes a hundred times as long.
 struct LoopLaw {
     double gain = 0;       ///< u/y, with the sign of the controller's

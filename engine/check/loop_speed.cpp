@@ -20,18 +20,18 @@ using Series = std::vector<double>;
 
 constexpr std::array<double, 16> kDeadTimes = {0.25, 0.5, 1, 1.5, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22, 28, 36};  // rows
 constexpr double kRowsPerTi = 80;
-constexpr std::size_t kFewestRows = 400, kMostRows = 3000;
-constexpr std::size_t kSkipped = 8;        // first rows, whose past is unknown
+constexpr std::size_t kFewestRows = 400, kMostRows = 2500;
+constexpr std::size_t kSkipped = 8;  // first rows, whose past is unknown
 constexpr int kIterations = 12, kDampings = 8;
-constexpr double kConverged = 0.01;        // of the robust cost
+constexpr double kConverged = 0.01;              // of the robust cost
 constexpr double kOutlier = 3, kFarOutlier = 8;  // standard deviations
 constexpr double kLargestPole = 0.998;
-constexpr std::size_t kResponse = 400;     // rows of a load step's mark
-constexpr double kLoadStep = 20;           // square of its size over its error
-constexpr double kNegligible = 1e-3;       // of the mark's power
+constexpr std::size_t kResponse = 400;  // rows of a load step's mark
+constexpr double kLoadStep = 20;        // square of its size over its error
+constexpr double kNegligible = 1e-3;    // of the mark's power
 constexpr double kCostOfStep = 5;
 constexpr int kSearches = 3;
-constexpr double kMad = 1.4826;            // standard deviation over the median magnitude, of a normal variable
+constexpr double kMad = 1.4826;  // standard deviation over the median magnitude, of a normal variable
 // Crossover frequency times dead time: SIMC with tau_c = L gives 0.5, 2 L 0.33, 8 L 0.11.
 constexpr double kLeastPace = 0.01, kSlowPace = 0.19, kMostPace = 2.5;
 // A crossover far below 1/Ti: the loop is slower than the plant left alone.
@@ -54,7 +54,8 @@ struct Candidate {
 
 double robust(double z) {
     if (z < kOutlier) return 0.5 * z * z;
-    return z < kFarOutlier ? kOutlier * z - 0.5 * kOutlier * kOutlier : kOutlier * kFarOutlier - 0.5 * kOutlier * kOutlier;
+    return z < kFarOutlier ? kOutlier * z - 0.5 * kOutlier * kOutlier
+                           : kOutlier * kFarOutlier - 0.5 * kOutlier * kOutlier;
 }
 
 double scale_of(const Series& residual) {
@@ -325,7 +326,8 @@ LoopSpeed judged(const std::vector<Candidate>& best, const std::vector<double>& 
     const double least = std::ranges::min(cost);
     double slow = 0, quick = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        const double above = std::log(dead_times[std::min(i + 1, count - 1)]), below = std::log(dead_times[i > 0 ? i - 1 : 0]);
+        const double above = std::log(dead_times[std::min(i + 1, count - 1)]),
+                     below = std::log(dead_times[i > 0 ? i - 1 : 0]);
         const double width = (above - below) / (i > 0 && i + 1 < count ? 2 : 1);
         weight[i] = std::exp(-(cost[i] - least)) * width;
         if (pace[i] > kLeastPace && pace[i] < kSlowPace) slow += weight[i];
@@ -333,12 +335,16 @@ LoopSpeed judged(const std::vector<Candidate>& best, const std::vector<double>& 
         if (!(pace[i] > 0.5 * kLeastPace && pace[i] < kMostPace)) weight[i] = 0;
     }
     LoopSpeed speed;
-    const double by_dead_time = slow + quick > 1e-9 ? slow / (slow + quick) : 0.5;
+    speed.by_dead_time = slow + quick > 1e-9 ? slow / (slow + quick) : 0.5;
     speed.pace = weighted_mean(weight, pace);
     speed.dead_time = weighted_mean(weight, dead);
     speed.crossover_Ti = weighted_mean(weight, crossover) * terms.Ti;
-    const double odds = std::clamp(std::pow(kUsualCrossoverTi / std::max(speed.crossover_Ti, 1e-9), 2), kLeastOdds, kMostOdds);
-    speed.slow = by_dead_time < 1 ? by_dead_time * odds / (by_dead_time * odds + 1 - by_dead_time) : 1;
+    const double odds =
+        std::clamp(std::pow(kUsualCrossoverTi / std::max(speed.crossover_Ti, 1e-9), 2), kLeastOdds, kMostOdds);
+    const double likelihood = speed.by_dead_time;
+    speed.slow = likelihood < 1 ? likelihood * odds / (likelihood * odds + 1 - likelihood) : 1;
+    speed.information = std::ranges::max(cost) - least;
+    speed.forward = double(std::ranges::count_if(pace, [](double value) { return value > 0; })) / double(count);
     speed.load_steps = int(std::ranges::min_element(best, {}, &Candidate::penalised)->at.size());
     speed.resolution = terms.row;
     return speed;
@@ -350,7 +356,8 @@ std::optional<LoopSpeed> loop_speed(std::span<const double> measurement, std::sp
                                     double Ti, double step, const std::stop_token& stop) {
     const std::size_t n = measurement.size();
     const double wanted = std::min(Ti / step / kRowsPerTi, double(n) / double(kFewestRows));
-    const auto block = std::max({std::size_t{1}, static_cast<std::size_t>(std::max(1.0, wanted)), (n + kMostRows - 1) / kMostRows});
+    const auto block =
+        std::max({std::size_t{1}, static_cast<std::size_t>(std::max(1.0, wanted)), (n + kMostRows - 1) / kMostRows});
     const auto y = block_means(measurement, block), u = block_means(output, block);
     if (y.size() < kFewestRows / 4) return std::nullopt;
     Series dy, du;

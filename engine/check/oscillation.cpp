@@ -21,6 +21,7 @@ constexpr double kFewestCycles = 4;                    // in the record, of the 
 constexpr int kCrossings = 12;                         // of the autocorrelation, hence eleven intervals
 constexpr std::size_t kMostPeriods = 3;
 constexpr std::size_t kSpectrumPoints = 160;
+constexpr double kBeside = 0.06;         // of a frequency
 constexpr std::size_t kLinePlaces = 33;  // frequencies that are tried for a single sine
 
 /// Power over frequency of a window of the series, at twice as many frequencies as it has of its own.
@@ -165,6 +166,48 @@ void find_line(const std::vector<double>& band, double f, Peak& peak) {
     peak.line_period = 1 / found;
 }
 
+/// Without the sine, the power just beside it relative to the median of the band: about 1 for a sine from outside over
+/// the loop's own noise, large for a loop that hardly damps its own oscillation, whose phase drifts.
+double power_beside(const std::vector<double>& x, double f) {
+    const double n = double(x.size());
+    std::complex<double> turn = std::polar(1.0, 2 * std::numbers::pi * f), here = 1;
+    double cc = 0, ss = 0, cs = 0, xc = 0, xs = 0;
+    for (const double value : x) {
+        cc += here.real() * here.real();
+        ss += here.imag() * here.imag();
+        cs += here.real() * here.imag();
+        xc += value * here.real();
+        xs += value * here.imag();
+        here *= turn;
+    }
+    const double det = cc * ss - cs * cs;
+    if (!(det > 0)) return 0;
+    const double a = (xc * ss - xs * cs) / det, b = (xs * cc - xc * cs) / det;
+    std::vector<double> rest(quick_length(x.size()), 0.0);
+    here = 1;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double hann = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (double(i) + 0.5) / n);
+        rest[i] = hann * (x[i] - a * here.real() - b * here.imag());
+        here *= turn;
+    }
+    const Spectrum X = half_spectrum(rest);
+    double beside = 0;
+    std::size_t count = 0;
+    std::vector<double> others;
+    for (std::size_t k = 0; k < X.size(); ++k) {
+        const double place = double(k) / double(rest.size()) / f;
+        if (!(place > kBandBelow && place < kBandAbove)) continue;
+        if (std::abs(place - 1) < kBeside) {
+            beside += std::norm(X[k]);
+            ++count;
+        } else {
+            others.push_back(std::norm(X[k]));
+        }
+    }
+    if (count == 0 || others.empty()) return 0;
+    return beside / double(count) / std::max(median(std::move(others)), 1e-300);
+}
+
 /// The largest correlation about `periods` periods, corrected for the pairs that are missing.
 double correlation_after(const std::vector<double>& r, double period, double periods, std::size_t n) {
     const double centre = std::round(periods * period), half = std::max(1.0, std::floor(0.2 * period));
@@ -214,6 +257,7 @@ Peak strongest_peak(std::span<const double> series, double tilt) {
     peak.share = period.share;
     peak.cycles = n * f;
     find_line(band.series, f, peak);
+    peak.spread = power_beside(x, 1 / peak.line_period);
     const auto longest = std::min(x.size() - 1, std::size_t(4 * peak.period));
     peak.persistence = correlation_after(autocorrelation(band.series, longest), peak.period, 3, x.size());
     return peak;

@@ -26,6 +26,7 @@ struct Peak {
     double share = 0;        ///< of the series' power in the peak's band
     double line = 0;         ///< of the band's power in a single sine, 0 to 1
     double line_period = 0;  ///< of that sine
+    double spread = 0;       ///< power beside that sine over the band\'s median: high where the phase drifts
     double persistence = 0;  ///< autocorrelation of the band after three periods
     double cycles = 0;       ///< in the series
 };

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/check/loop_law.h"
 #include "engine/check/thresholds.h"
+#include "engine/identification/record/series.h"
 
 namespace tunewright::check {
 namespace {
@@ -16,6 +18,14 @@ double share(const std::vector<char>& marks) {
 
 std::size_t still_rows(std::size_t rows) {
     return std::max(kStillRows, static_cast<std::size_t>(kStillShare * static_cast<double>(rows)));
+}
+
+/// True if the proportional part alone would have moved the output by some of its steps: an output that rests while the
+/// measurement rests too is only rounded.
+bool should_have_moved(const Samples& samples, const EqualRun& run, double gain, double step) {
+    const auto y = std::span(samples.y).subspan(run.begin, run.length);
+    const auto [low, high] = std::ranges::minmax(y);
+    return std::abs(gain) * (high - low) >= kHeldSteps * step;
 }
 
 double limit_share(const Samples& samples, double limit, double near) {
@@ -50,10 +60,15 @@ std::array<double, 2> output_range(const LoopQuestion& question, const Samples& 
 
 std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range) {
     std::vector<char> held(samples.size(), 0);
+    const LoopLaw law = loop_law(samples.error(), samples.u, samples.step);
+    const double step = samples.u.empty() ? 0 : quantisation_step(samples.u);
     const double near = kAtLimit * (u_range[1] - u_range[0]);
     for (const EqualRun& run : equal_runs(samples.u)) {
         const double u = samples.u[run.begin];
         if (run.length < still_rows(samples.size()) || u <= u_range[0] + near || u >= u_range[1] - near) continue;
+        if (double(run.length) < kHeldShare * double(samples.size()) &&
+            !should_have_moved(samples, run, law.gain, step))
+            continue;
         std::fill_n(held.begin() + static_cast<std::ptrdiff_t>(run.begin), run.length, 1);
     }
     return held;

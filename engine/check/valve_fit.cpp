@@ -3,9 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
-#include <numeric>
 
 #include "engine/check/samples.h"
 #include "engine/numerics/fourier.h"
@@ -18,29 +16,30 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 constexpr std::size_t kMostRows = 9000;
-constexpr double kRowsPerPeriod = 60;      // at least, where rows are left out
+constexpr double kRowsPerPeriod = 60;  // at least, where rows are left out
 constexpr double kBlocksPerPeriod = 12;
 constexpr std::size_t kFewestBlocks = 160;
 constexpr double kLeastRatio = 0.3, kMostRatio = 1.35;  // of a band to the output's range within a period
 constexpr int kOwnLags = 6, kOutputLags = 3, kValveLags = 2;
-constexpr double kLongestDelay = 0.35;     // of the period
+constexpr double kLongestDelay = 0.35;  // of the period
 constexpr int kFewestDelays = 3, kMostDelays = 8;
 constexpr int kSegments = 10, kBestLeftOut = 2;
-constexpr double kLineLike = 0.8;          // share of a single sine from which harmonics of it are regressors too
+constexpr double kLineLike = 0.8;  // share of a single sine from which harmonics of it are regressors too
 constexpr int kHarmonics = 5;
-constexpr double kHighest = 0.45;          // cycles per block
+constexpr double kHighest = 0.45;                         // cycles per block
 constexpr double kBelowPeriod = 0.3, kAbovePeriod = 2.5;  // of 1/period: the band in which its cycles are counted
 
 // What a fit must reach. The gains are larger where other explanations are near: a regular oscillation is also a linear
 // resonance, a line also a disturbance.
 constexpr double kRegularHere = 10;
 constexpr double kGain = 0.03, kGainOfRegular = 0.08, kGainOfLine = 0.25;
-constexpr double kShareOfLine = 0.3;       // of what the harmonics explain
-constexpr double kLeastB = -0.1, kLeastBOfLine = 0.05;
-constexpr double kBothGain = 0.08;         // A and B agree: fewer events suffice
+constexpr double kShareOfLine = 0.3;  // of what the harmonics explain
+constexpr double kLeastB = -0.1, kLeastBOfLine = 0.05, kBothOfLine = 0.15;
+constexpr double kBothGain = 0.08;  // A and B agree: fewer events suffice
 constexpr double kStrength = 20, kBothStrength = 12;
 constexpr double kPositive = 0.7, kPositiveOfStrong = 0.5, kStrongGain = 0.2;
 constexpr double kWrongWay = -0.15, kBarely = 0.03, kBarelyB = 0.05, kClearGain = 0.3;
+constexpr double kNearlyBoth = 0.1, kOneClear = 0.14, kNearlyWay = -0.05, kNearlyWayB = 0.025;
 constexpr double kBandOfRange = 1.02, kBandOfRangeRegular = 1.2, kHardlyRegular = 5;
 
 Vector centred(std::vector<double> values) {
@@ -59,8 +58,8 @@ Matrix lags(const Vector& series, Eigen::Index skip, int from, int count) {
 
 /// A regression with one series of the valve or the output, for each delay.
 struct SeriesFit {
-    std::vector<double> squares;                                  ///< residual's, by delay
-    std::vector<Eigen::Matrix<double, kValveLags, 1>> weights;    ///< by delay
+    std::vector<double> squares;                                ///< residual's, by delay
+    std::vector<Eigen::Matrix<double, kValveLags, 1>> weights;  ///< by delay
     std::size_t best() const { return std::size_t(std::ranges::min_element(squares) - squares.begin()); }
     double least() const { return std::ranges::min(squares); }
 };
@@ -103,11 +102,11 @@ private:
 
 /// What the best valve explains more than the output, in one of the two regressions.
 struct Comparison {
-    double gain = 0, positive = 0;   ///< trimmed; share of the segments in which the valve is better
-    double direction = 0;            ///< -1 to 1: the sign and agreement of the valve's weights
+    double gain = 0, positive = 0;  ///< trimmed; share of the segments in which the valve is better
+    double direction = 0;           ///< -1 to 1: the sign and agreement of the valve's weights
     std::size_t valve = 0;
-    double linear = 0;               ///< least square with the output
-    std::vector<double> squares;     ///< least square of each valve
+    double linear = 0;            ///< least square with the output
+    std::vector<double> squares;  ///< least square of each valve
 };
 
 void compare_segments(const Vector& with_output, const Vector& with_valve, Comparison& out) {
@@ -115,7 +114,8 @@ void compare_segments(const Vector& with_output, const Vector& with_valve, Compa
     std::vector<std::pair<double, double>> parts;  // gain, square with the valve
     for (int k = 0; k < kSegments; ++k) {
         const Eigen::Index from = n * k / kSegments, count = n * (k + 1) / kSegments - from;
-        const double u = with_output.segment(from, count).squaredNorm(), v = with_valve.segment(from, count).squaredNorm();
+        const double u = with_output.segment(from, count).squaredNorm(),
+                     v = with_valve.segment(from, count).squaredNorm();
         parts.emplace_back(u - v, v);
         out.positive += u > v ? 1.0 / kSegments : 0;
     }
@@ -190,8 +190,8 @@ struct Blocks {
     }
 };
 
-/// The median number of rows from one upward crossing of zero to the next, in a band about the period, without the first
-/// third of the record, in which a cycle may still build up.
+/// The median number of rows from one upward crossing of zero to the next, in a band about the period, without the
+/// first third of the record, in which a cycle may still build up.
 double median_period(std::span<const double> y, double period) {
     const auto last = y.subspan(y.size() / 3);
     std::vector<double> x(last.begin(), last.end());
@@ -239,35 +239,72 @@ double weighted_band(const Comparison& comparison, const std::vector<double>& ba
     return std::exp(sum / weights);
 }
 
+/// A and B both speak for the valve and drive the measurement the right way: fewer events suffice.
+struct Agreement {
+    double gain = 0.03, gain_b = 0.01, strength = 14, way = 0.12, least_ratio = 0.35, most_ratio = 0.98;
+};
+constexpr Agreement kAgreement;
+
+/// Only A speaks for the valve, but clearly, nearly everywhere and the right way.
+struct Strong {
+    double gain = 0.06, gain_b = -0.2, strength = 14, way = 0.3, positive = 0.8, most_ratio = 0.98;
+};
+constexpr Strong kStrong;
+
 struct Judged {
     const BothComparisons& plain;
     const std::optional<BothComparisons>& with_line;
     double blocks, regularity, sign, band_ratio;
 };
 
+/// Gains of A and B, the lesser of those with and without harmonics of a line.
+struct Gains {
+    double a = 0, b = 0;
+    bool enough = false;  ///< for this kind of oscillation
+};
+
+Gains gains_of(const Judged& j) {
+    Gains gains{j.plain.a.gain, j.plain.b.gain};
+    if (j.with_line) {
+        gains.a = std::min(gains.a, j.with_line->a.gain);
+        gains.b = std::min(gains.b, j.with_line->b.gain);
+        const double of_line = std::log(j.plain.a.linear / j.with_line->a.linear);
+        gains.enough =
+            ((gains.a >= kGainOfLine && gains.b >= kLeastBOfLine) || std::min(gains.a, gains.b) >= kBothOfLine) &&
+            gains.a >= kShareOfLine * of_line;
+    } else if (j.regularity >= kRegularHere) {
+        gains.enough = gains.a >= kGainOfRegular && gains.b >= 0;
+    } else {
+        gains.enough = gains.a >= kGain && gains.b >= kLeastB;
+    }
+    return gains;
+}
+
 /// The gain if every condition holds, else empty.
 std::optional<double> judged(const Judged& j) {
-    const Comparison &a = j.plain.a, &b = j.plain.b;
-    double gain = a.gain, gain_b = b.gain;
-    bool good = false;
-    if (j.with_line) {
-        gain = std::min(gain, j.with_line->a.gain);
-        gain_b = std::min(gain_b, j.with_line->b.gain);
-        const double of_line = std::log(a.linear / j.with_line->a.linear);
-        good = gain >= kGainOfLine && gain >= kShareOfLine * of_line && gain_b >= kLeastBOfLine;
-    } else if (j.regularity >= kRegularHere) {
-        good = gain >= kGainOfRegular && gain_b >= 0;
-    } else {
-        good = gain >= kGain && gain_b >= kLeastB;
+    const Gains gains = gains_of(j);
+    const double strength = j.blocks * gains.a, positive = j.plain.a.positive;
+    const double way = j.sign * j.plain.a.direction, way_b = j.sign * j.plain.b.direction, ratio = j.band_ratio;
+    if (!j.with_line) {
+        const bool irregular = j.regularity < kRegularHere && !gains.enough;
+        if (irregular && gains.a >= kStrong.gain && strength >= kStrong.strength && gains.b >= kStrong.gain_b &&
+            positive >= kStrong.positive && way >= kStrong.way && ratio <= kStrong.most_ratio)
+            return gains.a;
+        if (gains.a >= kAgreement.gain && gains.b >= kAgreement.gain_b && strength >= kAgreement.strength &&
+            std::min(way, way_b) >= kAgreement.way && positive >= kPositive && ratio >= kAgreement.least_ratio &&
+            ratio <= kAgreement.most_ratio)
+            return gains.a;
     }
-    const bool both = gain >= kBothGain && gain_b >= kBothGain;
-    good = good && (a.positive >= kPositive || (a.positive >= kPositiveOfStrong && std::min(gain, gain_b) >= kStrongGain));
-    good = good && (j.blocks * gain >= kStrength || (both && j.blocks * gain >= kBothStrength));
+    const bool both = gains.a >= kBothGain && gains.b >= kBothGain;
+    const bool everywhere =
+        positive >= kPositive || (positive >= kPositiveOfStrong && std::min(gains.a, gains.b) >= kStrongGain);
+    const bool events = strength >= kStrength || (both && strength >= kBothStrength);
     // The valve must drive the measurement the right way, and the output must travel further than the band to move it.
-    const double way = j.sign * a.direction, way_b = j.sign * b.direction;
-    good = good && way > kWrongWay && (gain >= kClearGain || !(way < kBarely && way_b < kBarelyB));
-    good = good && j.band_ratio <= (j.regularity < kHardlyRegular ? kBandOfRange : kBandOfRangeRegular);
-    return good ? std::optional(gain) : std::nullopt;
+    const bool nearly = std::min(gains.a, gains.b) >= kNearlyBoth && std::max(gains.a, gains.b) >= kOneClear &&
+                        way >= kNearlyWay && way_b >= kNearlyWayB;
+    const bool drives = way > kWrongWay && (gains.a >= kClearGain || nearly || !(way < kBarely && way_b < kBarelyB));
+    const bool reaches = ratio <= (j.regularity < kHardlyRegular ? kBandOfRange : kBandOfRangeRegular);
+    return gains.enough && everywhere && events && drives && reaches ? std::optional(gains.a) : std::nullopt;
 }
 
 }  // namespace
@@ -327,7 +364,8 @@ std::optional<ValveFit> fit_valve(std::span<const double> measurement, const Val
     ValveFit fit;
     fit.band = weighted_band(plain.a, bands, count);
     fit.jump = jumps[plain.a.valve];
-    const auto gain = judged({plain, with_line, count, regularity, sign, bands[plain.a.valve] / std::max(range, 1e-300)});
+    const auto gain =
+        judged({plain, with_line, count, regularity, sign, bands[plain.a.valve] / std::max(range, 1e-300)});
     fit.passes = gain.has_value();
     fit.gain = gain.value_or(plain.a.gain);
     fit.strength = count * fit.gain;

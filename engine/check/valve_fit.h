@@ -1,5 +1,5 @@
-// Whether a valve that sticks explains the measurement better than the output itself does: a Hammerstein model against a
-// linear one (Karra and Karim 2009, Control Engineering Practice 17, 105; Jelali 2008, Journal of Process Control 18,
+// Whether a valve that sticks explains the measurement better than the output itself does: a Hammerstein model against
+// a linear one (Karra and Karim 2009, Control Engineering Practice 17, 105; Jelali 2008, Journal of Process Control 18,
 // 632).
 //
 // On block means of about a twelfth of the period, the measurement is regressed on its own past and on the valve's
@@ -51,7 +51,8 @@ struct ValveFit {
     double period = 0;    ///< rows of the record
 };
 
-/// `measurement`: with the sign of the plant's gain as the controller's gain has it. Empty: too few candidates or blocks.
+/// `measurement`: with the sign of the plant's gain as the controller's gain has it. Empty: too few candidates or
+/// blocks.
 std::optional<ValveFit> fit_valve(std::span<const double> measurement, const ValveBank& bank,
                                   const PeriodCandidate& candidate, double regularity, double sign);
 

@@ -7,7 +7,7 @@ namespace tunewright::check {
 namespace {
 
 constexpr int kBands = 18;
-constexpr double kLeastBand = 0.05, kMostBand = 1.05;  // of the span
+constexpr double kLeastBand = 0.05, kMostBand = 1.05;         // of the span
 constexpr std::array<double, 4> kJumps = {0, 0.33, 0.67, 1};  // of the band
 
 std::vector<double> he_position(std::span<const double> output, double band, double jump) {

@@ -5,9 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
-#include "tests/engine/tuning/random_plants.h"
+#include "tests/engine/check/simulated_loop.h"
 
 namespace tunewright::check {
 namespace {
@@ -17,10 +16,6 @@ struct KnownLoop {
     int delay = 1;
     double exact = 0;  ///< minimum variance over variance
 };
-
-double normal(test::Random& random) {
-    return std::sqrt(-2 * std::log(random.uniform(1e-12, 1))) * std::cos(2 * std::numbers::pi * random.uniform(0, 1));
-}
 
 /// A closed loop: a load that drifts as a lag does, a first-order plant with dead time, a PI controller. The minimum
 /// variance over the first `delay` terms of the impulse response from the noise to the error.

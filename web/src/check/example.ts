@@ -64,7 +64,7 @@ function loop(model: LoopModel, seed: number) {
 
 const MODELS: Record<string, LoopModel> = {
   FIC101: { K: 1.2, T: 6, L: 2, Kp: 0.4, Ti: 9, noise: 0.12, start: { y: 60, u: 45 }, stick: 4 },
-  TIC102: { K: 0.5, T: 150, L: 20, Kp: 3, Ti: 300, noise: 0.03, start: { y: 85, u: 55 } },
+  TIC102: { K: 0.5, T: 150, L: 20, Kp: 3, Ti: 300, noise: 0.1, start: { y: 85, u: 55 } },
   TIC103: { K: 0.8, T: 90, L: 12, Kp: 0.6, Ti: 90, noise: 0.06, start: { y: 140, u: 40 } },
   FIC104: { K: 1, T: 5, L: 2, Kp: 0.5, Ti: 7, noise: 0.1, start: { y: 40, u: 38 } },
   PIC105: { K: 1.5, T: 20, L: 6, Kp: 2.7, Ti: 30, noise: 0.02, start: { y: 6, u: 50 } },
@@ -95,16 +95,16 @@ function walk(seed: number, size: number, lag: number): () => number {
 
 function lines(): Record<string, string[]> {
   const [flow, heated, temperature, inner, tight, small] = Object.values(MODELS).map((model, index) => loop(model, 11 + index));
-  const [heat, header, demand] = [steps(3, 6, 400), walk(5, 0.3, 40), walk(7, 10, 700)];
+  const [heat, header, demand] = [steps(3, 3, 400), walk(5, 0.3, 40), walk(7, 10, 700)];
   const written: Record<string, string[]> = Object.fromEntries(Object.keys(MODELS).map((tag) => [tag, ["time [s],SP,PV,OP,MODE"]]));
   for (let at = 0; at < ROWS * EVERY; at += 1) {
     const pressure = header();
     const first = flow!(61.5, 0.2 * pressure);
-    const master = temperature!(140, heat());
+    const master = temperature!(at % 2700 < 1350 ? 140 : 146, heat());
     const made: Record<string, Made> = {
       FIC101: first,
       // A larger flow of the first loop cools what the second one heats.
-      TIC102: heated!(85, -1.5 * (first.measured - 61.5)),
+      TIC102: heated!(85, pressure - (first.measured - 61.5)),
       TIC103: master,
       FIC104: inner!(Math.round(master.output), 0.6 * pressure),
       PIC105: tight!(at < 1800 ? 6 : 6.5, pressure),

@@ -2,7 +2,7 @@
 // loop of the work list.
 import type { CheckLoop, LoopCheck, Units } from "../api/types.ts";
 import { loopFrames } from "../charts/loop_check.ts";
-import { h } from "../dom.ts";
+import { h, passFocus } from "../dom.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { cureCard } from "./cure_card.ts";
 import { actionCard, causeCard, figuresCard } from "./loop_cards.ts";
@@ -51,6 +51,7 @@ export function loopView(announce: (sentence: string) => void): LoopView {
 
   /** Its name stays in the accessibility tree: "Next loop FIC101". */
   function lead(link: HTMLAnchorElement, word: string, place: number | undefined, { content, address }: LoopShown): void {
+    if (place === undefined) passFocus(link, link === before ? after : before, back);
     link.hidden = place === undefined;
     if (place === undefined) return;
     link.href = address(place);

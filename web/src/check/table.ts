@@ -87,7 +87,7 @@ export function workTable(onSort: (column: string) => void): WorkTable {
   function heading(id: string, label: string, look: string, about: ExplainedName | null): HTMLElement {
     const sort = h("button", { type: "button", class: "sort", onclick: () => onSort(id) }, label);
     const explain = about ? explained(about, "", `What is ${label}?`) : "";
-    return h("th", { scope: "col", "data-column": id, class: look || null }, h("span", { class: "head" }, sort, explain));
+    return h("th", { scope: "col", "data-column": id, class: look || null }, sort, explain);
   }
 
   function cell(row: WorkRow, column: WorkColumn): HTMLElement {

@@ -40,6 +40,12 @@ export interface CheckEvents {
 const TITLE = "Check loops in operation";
 const EMPTY: CheckRoute = { screen: "check", of: null, from: null, loop: null, list: WHOLE_LIST };
 
+/** The reason why a job that has ended has no work list. */
+function whyNone({ request, error }: CheckJob): string {
+  if (request && !isCheckRequest(request)) return "This job is not a check of loops.";
+  return error?.detail ?? "The check was stopped before a loop was done.";
+}
+
 export function checkView(announce: (sentence: string) => void, events: CheckEvents): CheckView {
   const errors = new FormErrors();
   let route = EMPTY;
@@ -73,7 +79,8 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
     parts,
   );
 
-  const content = (): CheckContent | null => job?.result ?? null;
+  /** Another kind of job has another result. */
+  const content = (): CheckContent | null => (job?.result && "loops" in job.result ? job.result : null);
   const addressOf = (place: number): string => formatRoute({ ...route, loop: place });
 
   async function send({ request, errors: faults }: ReturnType<typeof form.read>): Promise<void> {
@@ -118,14 +125,14 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
   function take(next: CheckJob): void {
     const first = content() === null;
     job = next;
-    if (next.request && !isCheckRequest(next.request)) return say("This job is not a check of loops.");
-    if (next.result) {
-      list.show(next.result, unitNames(next.result.units), addressOf);
+    const found = content();
+    if (found) {
+      list.show(found, unitNames(found.units), addressOf);
       list.setView(route.list);
     }
     menu.show("v1/jobs", next.request ?? null);
     show();
-    if (next.result && first) announce(`${counted(next.result.loops.length, "loop")} checked. ${list.sentence()}`);
+    if (found && first) announce(`${counted(found.loops.length, "loop")} checked. ${list.sentence()}`);
   }
 
   function follow(id: string): void {
@@ -135,7 +142,10 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
     stop = followCheck(id, {
       onJob: take,
       onProgress: progress.follow,
-      onTrouble: say,
+      onTrouble(sentence) {
+        say(sentence);
+        if (job === null) show();
+      },
     });
   }
 
@@ -143,7 +153,9 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
   function partShown(): HTMLElement | null {
     if (route.of === null) return entry;
     if (content()) return route.loop === null ? list.element : loop.element;
-    return job && isFinal(job.status) ? null : progress.element;
+    // Nothing is known of a job that cannot be read.
+    if (job === null) return trouble.hidden ? progress.element : null;
+    return isFinal(job.status) ? null : progress.element;
   }
 
   function show(): void {
@@ -163,7 +175,7 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
       loop.element.hidden = true;
       say("This check has no such loop.");
     }
-    if (part === null) say(job?.error?.detail ?? "The check was stopped before a loop was done.");
+    if (part === null && job) say(whyNone(job));
     showHead(part === loop.element ? (row?.loop.tag ?? TITLE) : "");
   }
 

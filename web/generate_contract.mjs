@@ -8,11 +8,11 @@ import { fileURLToPath } from "node:url";
 import openapiTS, { astToString } from "openapi-typescript";
 
 /** Types that the page sends; an answer with one of them contains it as sent. */
-const SENT = ["IdentifyRequest", "PlantQuestion", "RangeRequest", "RelayRequest", "TuningRequest"];
+const SENT = ["CheckRequest", "IdentifyRequest", "PlantQuestion", "RangeRequest", "RelayRequest", "TuningRequest"];
 
 /** Types of answers; the types to which both refer are included. */
 const ANSWERED = [
-  "Batch", "ControllerProduct", "ControllerRecordAnswer", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "Health",
+  "Batch", "CheckResult", "ControllerProduct", "ControllerRecordAnswer", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "Health",
   "IdentifyAnswer", "Job", "JobList", "MethodDescription", "PlantAnswer", "PreviewAnswer", "Problem", "RangeExample", "RangeResult",
   "RelayAnswer", "ScheduleSettingsAnswer", "SettingsAnswer", "TuningResult",
 ];
@@ -22,8 +22,8 @@ const OPEN = { Plant: "type", PlantModel: "type", Method: "method" };
 
 /** Types with figures of which the page shows the units. */
 const MEASURED = [
-  "DataQuality", "IdealController", "LoadPerformance", "MissingPart", "NonlinearController", "OwnLoad", "OwnLoadFigures", "OwnSetpointFigures",
-  "OwnStep", "OwnStepEntry", "PreTest", "ReplayFigures", "Robustness", "SetpointPerformance",
+  "CheckTest", "CheckedRecord", "DataQuality", "IdealController", "LoadPerformance", "LoopCause", "LoopPerformance", "LoopPeriod", "LoopRank", "MissingPart",
+  "NonlinearController", "OwnLoad", "OwnLoadFigures", "OwnSetpointFigures", "OwnStep", "OwnStepEntry", "PreTest", "ReplayFigures", "Robustness", "SetpointPerformance",
 ];
 
 const SHAPE = ["$ref", "type", "enum", "const", "additionalProperties", "items", "oneOf", "anyOf", "properties", "required"];

@@ -1,10 +1,11 @@
 // The job that the page follows: started, shown, replaced by another one.
+import { isCheckRequest } from "./api/check.ts";
 import { getJob, postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
 import { newest } from "./api/latest.ts";
 import { isFinal } from "./api/types.ts";
 import type { Job, TuningRequest } from "./api/types.ts";
 import { byAllMethods } from "./form/tuning_request.ts";
-import { addressOfJob, showsJob, stepAddress } from "./routes.ts";
+import { addressOfCheck, addressOfJob, showsJob, stepAddress } from "./routes.ts";
 import type { JobScreen, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 
@@ -48,6 +49,7 @@ export function jobFlow(store: Store): JobFlow {
   const beginRetune = newest();
 
   function open(job: Job, screen: JobScreen = "design"): void {
+    if (isCheckRequest(job.request)) return void (location.hash = addressOfCheck(job.id));
     const nothing = { selected: null, drawn: null, sort: "", rankMs: null, step: null };
     store.set((workspace) => ({ ...workspace, job, jobTrouble: "", ...nothing }));
     location.hash = addressOfJob(job.id, screen);
@@ -88,6 +90,8 @@ export function jobFlow(store: Store): JobFlow {
   }
 
   function take(job: Job): void {
+    // A check has a screen of its own.
+    if (isCheckRequest(job.request)) return location.replace(addressOfCheck(job.id));
     store.set((workspace) =>
       showsJob(workspace.route) && workspace.route.job === job.id ? { ...workspace, job, jobTrouble: "" } : workspace,
     );

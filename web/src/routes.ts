@@ -14,6 +14,7 @@ export type Route =
   | { screen: "identify"; job: string | null }
   /** An operating range: of an example, of that job, or the current content. */
   | { screen: "range"; example: string; job: string | null }
+  | CheckRoute
   | { screen: "relay"; plant: string; values: Record<string, string> }
   /** `values`: the positions of its sliders, if they differ from the proposal. `step`: the user's own step, if it was
       typed. */
@@ -32,6 +33,33 @@ export type Route =
   /** The API: the call with that id, or the one with which to begin. */
   | { screen: "docs"; call: string };
 
+/**
+ * Loops in operation. `of`: the job that checked them; null: the form, filled with the loops of the job `from` if there
+ * is one. `loop`: the place of the loop whose page is shown; null: the work list. `list`: what is shown of that, by the
+ * names of `LIST_PARTS`.
+ */
+export interface CheckRoute {
+  screen: "check";
+  of: string | null;
+  from: string | null;
+  loop: number | null;
+  list: ListView;
+}
+
+const LIST_PARTS = ["sort", "cause", "owner", "text"] as const;
+
+/** The loops that are shown of a work list, and their order. */
+export interface ListView {
+  /** A column's id, with a minus for descending order; "" is the service's order. */
+  sort: string;
+  cause: string;
+  owner: string;
+  /** A part of the name. */
+  text: string;
+}
+
+export const WHOLE_LIST: ListView = { sort: "", cause: "", owner: "", text: "" };
+
 export type JobScreen = "design" | "compare";
 export type JobRoute = Extract<Route, { screen: JobScreen }>;
 
@@ -44,6 +72,21 @@ export const showsStart = (route: Route): boolean => ["start", "new", "example",
 export const addressOfJob = (job: string, screen: JobScreen): string =>
   formatRoute(screen === "design" ? { screen, job, entry: null } : { screen, job, sort: "", rows: null });
 
+/** The result of a check. */
+export const addressOfCheck = (job: string): string => formatRoute({ screen: "check", of: job, from: null, loop: null, list: WHOLE_LIST });
+
+function checkRoute(of: string | null, values: Record<string, string>): CheckRoute {
+  const { loop = "", from } = values;
+  const list = Object.fromEntries(LIST_PARTS.map((part) => [part, values[part] ?? ""])) as unknown as ListView;
+  return { screen: "check", of, from: from || null, loop: /^\d+$/.test(loop) ? Number(loop) : null, list };
+}
+
+function formatCheck({ of, from, loop, list }: CheckRoute): string {
+  const values = { ...(loop === null ? {} : { loop: String(loop) }), ...list, ...(from === null ? {} : { from }) };
+  const query = new URLSearchParams(Object.entries(values).filter(([, text]) => text !== "")).toString();
+  return `#/${of === null ? "check" : `jobs/${encodeURIComponent(of)}/check`}${query ? `?${query}` : ""}`;
+}
+
 /** The route of a location hash; an unknown one leads to Start. */
 export function parseRoute(hash: string): Route {
   const [path = "", query = ""] = hash.replace(/^#\/?/, "").split("?", 2);
@@ -53,6 +96,7 @@ export function parseRoute(hash: string): Route {
   if (parts[0] === "examples" && parts[1]) return { screen: "example", id: parts[1] };
   if (parts[0] === "identify") return { screen: "identify", job: null };
   if (parts[0] === "range") return { screen: "range", example: parts[1] ?? "", job: null };
+  if (parts[0] === "check") return checkRoute(null, values);
   if (parts[0] === "relay") return { screen: "relay", plant: parts[1] ?? "", values };
   if (parts[0] === "jobs" && !parts[1]) return { screen: "jobs", text: values["q"] ?? "" };
   if (parts[0] === "batches" && parts[1]) return { screen: "batch", id: parts[1], sort: values["sort"] ?? "" };
@@ -69,6 +113,7 @@ export function parseRoute(hash: string): Route {
         ...(Number(values["Ms"]) > 1 ? { rankMs: Number(values["Ms"]) } : {}),
       };
     }
+    if (parts[2] === "check") return checkRoute(parts[1], values);
     if (parts[2] === "identify") return { screen: "identify", job: parts[1] };
     if (parts[2] === "range") return { screen: "range", example: "", job: parts[1] };
     if (parts[2] === "edit") return { screen: "edit", job: parts[1] };
@@ -127,6 +172,8 @@ export function formatRoute(route: Route): string {
     case "range":
       if (route.job !== null) return `#/jobs/${encodeURIComponent(route.job)}/range`;
       return route.example === "" ? "#/range" : `#/range/${encodeURIComponent(route.example)}`;
+    case "check":
+      return formatCheck(route);
     case "example":
       return `#/examples/${encodeURIComponent(route.id)}`;
     case "edit":
@@ -163,6 +210,7 @@ export function formatRoute(route: Route): string {
 function stillAt(from: Route): boolean {
   const now = parseRoute(location.hash);
   const same = showsStart(from) ? showsStart(now) : now.screen === from.screen;
+  if (from.screen === "check" && now.screen === "check") return from.of === now.of;
   return same && (!showsJob(from) || !showsJob(now) || from.job === now.job);
 }
 

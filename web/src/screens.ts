@@ -1,14 +1,16 @@
 // The screen for the address: created, kept or created again, and the data that screens pass to each other.
 import { notConnected, sentenceOf, whenBack } from "./api/client.ts";
 import { getJob, getRecentJobs, postJob } from "./api/jobs.ts";
+import { isCheckRequest } from "./api/check.ts";
 import { isRangeRequest } from "./api/range.ts";
 import type { Batch, FieldError, IdentifyRequest, Job, TuningRequest, Units } from "./api/types.ts";
+import type { CheckView } from "./check/view.ts";
 import { h } from "./dom.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
 import type { JobFlow } from "./job_flow.ts";
 import type { RangeView } from "./range/view.ts";
-import { addressOfJob, entryState, formatRoute, keepInEntry, parseRoute, rewriteAddress, showsJob, showsStart } from "./routes.ts";
-import type { JobRoute, Route } from "./routes.ts";
+import { addressOfJob, entryState, formatRoute, keepInEntry, parseRoute, rewriteAddress, showsJob, showsStart, WHOLE_LIST } from "./routes.ts";
+import type { CheckRoute, JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 import type { CandidateChoice } from "./views/cards/candidates_card.ts";
 import type { RelayView } from "./views/relay.ts";
@@ -42,6 +44,7 @@ export function screens(
   let start: StartView | null = null;
   let relay: RelayView | null = null;
   let range: RangeView | null = null;
+  let check: CheckView | null = null;
   /** The loop on Start whose plant the relay test uses; null: it has one of its own. */
   let relayOf: { units: Units | undefined; loop: number } | null = null;
   const ofStart = (): boolean => relayOf !== null && relayOf.loop === startScreen().loops();
@@ -52,7 +55,7 @@ export function screens(
 
   function mount(next: View, title: string, focus: boolean): void {
     if (view !== next) {
-      if (view && view !== start && view !== relay && view !== range) view.dispose();
+      if (view && ![start, relay, range, check].includes(view as never)) view.dispose();
       if (next === start) start.takeBack();
       view = next;
       stage.replaceChildren(next.element);
@@ -136,6 +139,28 @@ export function screens(
     });
     mount(range, "Range · Tunewright", focus);
     range.open(route);
+  }
+
+  /** Kept as well, with its files and its result. */
+  async function openCheck(route: CheckRoute, focus: boolean): Promise<void> {
+    const part = await later(import("./check/view.ts"), route, "Check", focus);
+    if (!part) return;
+    check ??= part.checkView(announce, {
+      onList(next) {
+        rewriteAddress(next, next);
+      },
+      onIdentify(test) {
+        startScreen().beginLoop("record");
+        openRecord(test);
+      },
+      async onTune(test) {
+        fillForm(test);
+        const [fault] = await tuneSubject({ record: test.record }, false);
+        if (fault) throw new Error(fault.detail);
+      },
+    });
+    mount(check, "Check · Tunewright", focus);
+    check.open(route);
   }
 
   /** Kept too, with its typed text. */
@@ -261,6 +286,8 @@ export function screens(
         // A range is changed on its own screen.
         if (isRangeRequest(job.request))
           return location.replace(formatRoute({ screen: "range", example: "", job: job.id }));
+        if (isCheckRequest(job.request))
+          return location.replace(formatRoute({ screen: "check", of: null, from: job.id, loop: null, list: WHOLE_LIST }));
         if (job.request) fillForEntry(job.request, false);
       }
       if (route.screen === "example") {
@@ -359,6 +386,7 @@ export function screens(
       return void openIdentify(route, test ?? "", !first);
     }
     if (route.screen === "range") return void openRange(route, !first);
+    if (route.screen === "check") return void openCheck(route, !first);
     if (route.screen === "relay") return void openRelay(route, !first);
     if (route.screen === "docs") return void openApi(route, !first);
     if (route.screen === "methods") return void openMethods(route, !first);

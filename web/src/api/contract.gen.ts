@@ -89,6 +89,12 @@ export type components = {
         points?: number;
         rows?: number;
       };
+      check?: {
+        loops?: number;
+        tag?: string;
+        verdict?: string;
+        action?: string;
+      };
       error?: string;
     };
     Job: {
@@ -104,8 +110,8 @@ export type components = {
       attempts?: number;
       not_before?: string;
       outline?: components["schemas"]["JobOutline"];
-      request: components["schemas"]["TuningRequest"] | components["schemas"]["RangeRequest"] | null;
-      result?: components["schemas"]["TuningResult"] | components["schemas"]["RangeResult"];
+      request: components["schemas"]["TuningRequest"] | components["schemas"]["RangeRequest"] | components["schemas"]["CheckRequest"] | null;
+      result?: components["schemas"]["TuningResult"] | components["schemas"]["RangeResult"] | components["schemas"]["CheckResult"];
       error?: components["schemas"]["Problem"];
       partial?: boolean;
       links?: {
@@ -1071,6 +1077,214 @@ export type components = {
       };
       proposed?: number;
     };
+    CheckRequest: {
+      name?: string;
+      units?: components["schemas"]["Units"];
+      loops: components["schemas"]["CheckLoop"][];
+      cluster?: boolean;
+      settings?: boolean;
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
+    };
+    CheckLoop: {
+      tag?: string;
+      kind?: "unknown" | "flow" | "pressure" | "level" | "temperature" | "composition";
+      averaging?: boolean;
+      record?: components["schemas"]["Record"];
+      csv?: string;
+      columns?: components["schemas"]["Columns"];
+      time_unit?: string;
+      start?: string;
+      range?: components["schemas"]["LoopRanges"];
+      controller?: components["schemas"]["Controller"];
+      weight?: number;
+    };
+    LoopRanges: {
+      pv?: [
+        number,
+        number
+      ];
+      op?: [
+        number,
+        number
+      ];
+    };
+    CheckResult: {
+      loops: components["schemas"]["LoopCheck"][];
+      clusters: components["schemas"]["LoopCluster"][];
+      cascades: components["schemas"]["LoopCascade"][];
+      ranking: components["schemas"]["LoopRank"][];
+      partial: boolean;
+      units?: components["schemas"]["Units"];
+      version: string;
+      request_hash: string;
+    };
+    LoopCheck: {
+      tag: string;
+      quality: components["schemas"]["CheckedRecord"];
+      service: components["schemas"]["LoopService"];
+      oscillation: components["schemas"]["LoopOscillation"];
+      cause: components["schemas"]["LoopCause"];
+      performance: components["schemas"]["LoopPerformance"];
+      action: components["schemas"]["CheckAction"];
+      cure?: components["schemas"]["LoopCure"];
+      weight?: number;
+      trend: components["schemas"]["LoopTrend"];
+      excerpt: components["schemas"]["LoopTrend"];
+      spectrum: components["schemas"]["CheckCurve"];
+      autocorrelation: components["schemas"]["CheckCurve"];
+      shape: components["schemas"]["LoopShape"];
+    };
+    CheckedRecord: {
+      rows: number;
+      sample_time: number;
+      duration: number;
+      missing: number;
+      held: number;
+      longest_gap: number;
+      noise: number;
+      y_step: number;
+      u_step: number;
+      compressed: boolean;
+      enough: boolean;
+      remarks: components["schemas"]["Warning"][];
+    };
+    LoopService: {
+      automatic: number | null;
+      manual: number | null;
+      saturated_low: number;
+      saturated_high: number;
+      output_still: number;
+      measurement_still: number;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    LoopOscillation: {
+      found: boolean;
+      period: number | null;
+      regularity: number | null;
+      periods: components["schemas"]["LoopPeriod"][];
+    };
+    LoopPeriod: {
+      period: number;
+      period_error: number;
+      regularity: number;
+      share: number;
+      amplitude: number;
+    };
+    LoopCause: {
+      verdict: "healthy" | "stiction" | "backlash" | "tight" | "sluggish" | "external" | "saturation" | "quantised" | "manual" | "frozen" | "undetermined" | "insufficient-data";
+      confidence: "sure" | "likely" | "open";
+      evidence: components["schemas"]["CheckEvidence"][];
+      alternatives: ("healthy" | "stiction" | "backlash" | "tight" | "sluggish" | "external" | "saturation" | "quantised" | "manual" | "frozen" | "undetermined" | "insufficient-data")[];
+      size: number | null;
+      jump: number | null;
+      period: number | null;
+      why_open?: string;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    CheckEvidence: {
+      code: string;
+      value: number;
+      limit?: number;
+      detail: string;
+    };
+    LoopPerformance: {
+      harris: components["schemas"]["HarrisRange"] | null;
+      idle_index: number | null;
+      variability: number;
+      mean_error: number;
+      following: number | null;
+      travel: number;
+      reversals: number;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    HarrisRange: {
+      low: number;
+      high: number;
+      delays: [
+        number,
+        number
+      ];
+    };
+    CheckAction: {
+      code: "none" | "retune" | "repair-valve" | "find-source" | "return-to-automatic" | "check-range" | "check-transmitter" | "record-again" | "test";
+      owner: "nobody" | "control" | "instruments" | "process" | "operations";
+      detail: string;
+    };
+    LoopCure: {
+      settings?: components["schemas"]["Controller"];
+      today?: components["schemas"]["Controller"];
+      plant?: components["schemas"]["Plant"];
+      worst_Ms: number | null;
+      error_ratio: number | null;
+      test?: components["schemas"]["CheckTest"];
+      detail: string;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    CheckTest: {
+      kind: "set-point-steps" | "output-steps";
+      size: number;
+      steps: number;
+      hold: number;
+      duration: number;
+      beyond_seen: boolean;
+      detail: string;
+    };
+    LoopTrend: {
+      t: number[];
+      y: (number | null)[];
+      r?: (number | null)[];
+      u: (number | null)[];
+    };
+    CheckCurve: {
+      x: number[];
+      y: (number | null)[];
+    };
+    LoopShape: {
+      from: number;
+      to: number;
+      dated: boolean;
+      period: number;
+      spectrum: number[];
+      wave: number[];
+      wave_from: number;
+      wave_step: number;
+      set_point: number[];
+      output: number[];
+      nonlinearity: number;
+    };
+    LoopCluster: {
+      period: number;
+      loops: number[];
+      source?: number;
+      detail: string;
+    };
+    LoopCascade: {
+      master: number;
+      slave: number;
+    };
+    LoopRank: {
+      loop: number;
+      gain: number | null;
+      share: number | null;
+      money: number | null;
+      effort: number;
+      after?: number;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
     RangeRequest: {
       name?: string;
       units?: components["schemas"]["Units"];
@@ -1621,6 +1835,28 @@ export type EmulationFit = components['schemas']['EmulationFit'];
 export type LevelOneRow = components['schemas']['LevelOneRow'];
 export type EmulatedScenario = components['schemas']['EmulatedScenario'];
 export type DesignAnswer = components['schemas']['DesignAnswer'];
+export type CheckRequest = components['schemas']['CheckRequest'];
+export type CheckLoop = components['schemas']['CheckLoop'];
+export type LoopRanges = components['schemas']['LoopRanges'];
+export type CheckResult = components['schemas']['CheckResult'];
+export type LoopCheck = components['schemas']['LoopCheck'];
+export type CheckedRecord = components['schemas']['CheckedRecord'];
+export type LoopService = components['schemas']['LoopService'];
+export type LoopOscillation = components['schemas']['LoopOscillation'];
+export type LoopPeriod = components['schemas']['LoopPeriod'];
+export type LoopCause = components['schemas']['LoopCause'];
+export type CheckEvidence = components['schemas']['CheckEvidence'];
+export type LoopPerformance = components['schemas']['LoopPerformance'];
+export type HarrisRange = components['schemas']['HarrisRange'];
+export type CheckAction = components['schemas']['CheckAction'];
+export type LoopCure = components['schemas']['LoopCure'];
+export type CheckTest = components['schemas']['CheckTest'];
+export type LoopTrend = components['schemas']['LoopTrend'];
+export type CheckCurve = components['schemas']['CheckCurve'];
+export type LoopShape = components['schemas']['LoopShape'];
+export type LoopCluster = components['schemas']['LoopCluster'];
+export type LoopCascade = components['schemas']['LoopCascade'];
+export type LoopRank = components['schemas']['LoopRank'];
 export type RangeRequest = components['schemas']['RangeRequest'];
 export type Scheduling = components['schemas']['Scheduling'];
 export type GivenRangePoint = components['schemas']['GivenRangePoint'];

@@ -5,6 +5,10 @@ import type { Schema } from "./method.ts";
 
 export type {
   Batch,
+  CheckCurve,
+  CheckLoop,
+  CheckRequest,
+  CheckResult,
   Controller,
   ControllerEvidence as Evidence,
   ControllerParameter as ProductParameter,
@@ -27,6 +31,11 @@ export type {
   JobSummary as ListedJob,
   LevelOneRow,
   LimitCycle,
+  LoopCheck,
+  LoopCluster,
+  LoopCure,
+  LoopRank,
+  LoopTrend,
   Model,
   OneSetting,
   OptimumAtMs,
@@ -114,6 +123,8 @@ export type Problem = Partial<Contract.Problem>;
 export type Candidate = Omit<Contract.Candidate, "criterion">;
 /** An entry of a method, or one that the page names. */
 export type Entry = Contract.Entry & { method: string };
+/** A check of loops in operation. */
+export type CheckJob = Omit<Contract.Job, "request" | "result"> & { request?: Contract.CheckRequest; result?: Contract.CheckResult };
 /** The result of a job about one loop or a range, or a combination of the answers to a slider. */
 export type Result = Partial<Omit<Contract.TuningResult, "controllers">> & { controllers: Entry[]; range?: Contract.Range };
 export type Job = Omit<Contract.Job, "request" | "result"> & { request?: TuningRequest; result?: Result };

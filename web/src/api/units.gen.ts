@@ -1,5 +1,17 @@
 // Made by generate_contract.mjs from the service's /openapi.json; not to be edited.
 export const UNITS = {
+  CheckTest: {
+    hold: "time",
+    duration: "time",
+  },
+  CheckedRecord: {
+    sample_time: "time",
+    duration: "time",
+    longest_gap: "time",
+    noise: "y",
+    y_step: "y",
+    u_step: "u",
+  },
   DataQuality: {
     sample_time: "time",
     noise_std: "y",
@@ -21,6 +33,23 @@ export const UNITS = {
     peak: "y",
     recovery_time: "time",
     TV: "u",
+  },
+  LoopCause: {
+    size: "u",
+    jump: "u",
+    period: "time",
+  },
+  LoopPerformance: {
+    variability: "y",
+    mean_error: "y",
+  },
+  LoopPeriod: {
+    period: "time",
+    period_error: "time",
+    amplitude: "y",
+  },
+  LoopRank: {
+    gain: "y",
   },
   MissingPart: {
     longest: "time",

@@ -32,7 +32,7 @@ const COLUMN_LABELS: Record<ColumnName, string> = {
   d: "Measured disturbance",
 };
 
-const TIME_UNITS = [
+export const TIME_UNITS = [
   ["", "as in the file, else seconds"],
   ["ms", "milliseconds"],
   ["s", "seconds"],

@@ -7,7 +7,7 @@ import { isFinal } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { parseNumber } from "../form/number.ts";
 import { implementOf } from "../my_controller.ts";
-import { formatRoute } from "../routes.ts";
+import { addressOfCheck, addressOfJob, formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { age, methodWords, shortPlant } from "../words/job_list.ts";
 import { defaultOf, robustOf } from "../words/limits.ts";
@@ -123,7 +123,8 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
     const list: HTMLElement[] = [
       h("a", { href: formatRoute({ screen: "edit", job: job.id }), "aria-label": `Duplicate ${name}` }, "Duplicate"),
     ];
-    if (job.status === "succeeded") {
+    // A check has no report.
+    if (job.status === "succeeded" && !job.outline?.check) {
       const report = reportLink();
       report.show(job.id, job.finished_at);
       report.element.setAttribute("aria-label", `Report of ${name}`);
@@ -159,7 +160,7 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
       h(
         "th",
         { scope: "row" },
-        h("a", { href: formatRoute({ screen: "design", job: job.id, entry: null }) }, nameOf(job)),
+        h("a", { href: outline?.check ? addressOfCheck(job.id) : addressOfJob(job.id, "design") }, nameOf(job)),
       ),
       h("td", { class: "words" }, shortPlant(outline)),
       h("td", { class: "words" }, methodWords(outline)),

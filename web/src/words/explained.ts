@@ -14,6 +14,7 @@ const LOOP = ["symbols", "loop"] as const;
 const PERFORMANCE = ["symbols", "performance"] as const;
 const CONTROLLER = ["symbols", "controller-c"] as const;
 const TERMS = ["glossary", "design-and-evaluation"] as const;
+const CHECK = ["symbols", "check"] as const;
 
 /** By the figure's name in the contract. */
 export const EXPLANATIONS = {
@@ -57,6 +58,29 @@ export const EXPLANATIONS = {
   delta_r: { title: "delta_r", text: "Errors much larger than this hardly enter the integral of the nonlinear controller. It avoids the overshoot after large set-point changes.", more: CONTROLLER },
   action: { title: "Direction of action", text: "Reverse: the output falls when the measurement rises, as for heating. Direct: it rises with it, as for cooling or a drain.", more: ["glossary", "loop-and-controller"] },
   longest_sample_time: { title: "Longest sample time", text: "The longest time between two computations of the controller with which the loop keeps its robustness, because half of it acts as dead time. A program that is called less often needs settings that were designed for that.", picture: "samples", more: ["numerics", "controllers-that-sample"] },
+  cause: { title: "Cause", text: "Why the loop is as it is, by tests of its record. A full disc is sure, a half one likely; a ring means that the record does not show the cause.", more: CHECK },
+  mending_gain: { title: "Gain", text: "How much smaller the mean magnitude of the error may become if the cause is removed, also in percent of that error. It is an estimate: half of the error of a loop that is tuned too slow, most of an oscillation that the loop makes itself.", more: CHECK },
+  mending_money: { title: "Money per hour", text: "The gain of the mean error times the weight of the loop. The weight is what a mean error of one unit of the measurement costs in an hour; with weights the list is in order of money.", more: CHECK },
+  period: { title: "Period", text: "The time from peak to peak of the strongest regular oscillation of the error. Loops with the same period often have the same source: the map of periods joins them.", more: CHECK },
+  regularity: { title: "Regularity", text: "The mean time between zero crossings of the autocorrelation over three of its standard deviations. Above 1 the oscillation is regular; loads that wander stay below.", more: CHECK },
+  period_share: { title: "Share", text: "The part of the error's variance that belongs to this oscillation. The rest is noise, drift, or another oscillation.", more: CHECK },
+  amplitude: { title: "Amplitude", text: "Half of the distance from the lowest to the highest value of the oscillation, in the unit of the measurement. Noise and drift are filtered out before.", more: CHECK },
+  mean_error: { title: "Mean error", text: "The mean magnitude of the set point minus the measurement over the record. Without a set point the mean of the measurement takes its place.", more: CHECK },
+  variability: { title: "Standard deviation", text: "The standard deviation of the error over the record. Compare it with what the product or the process tolerates, not with other loops.", more: CHECK },
+  harris: { title: "Harris range", text: "The variance that no controller can avoid over the variance of the error, between 0 and 1; near 1 tuning cannot lower the variance. It is a range because the dead time of the loop is not known: the ends belong to the shortest and the longest possible one.", more: CHECK },
+  idle_index: { title: "Idle index", text: "How often output and measurement move in the same direction after disturbances, from −1 to 1. Above 0.4 the loop is sluggish; it is reliable only where single disturbances are visible.", more: CHECK },
+  following: { title: "Following", text: "The variance of the error over that of the set point. Near 0 the measurement follows the set point closely, near 1 hardly.", more: CHECK },
+  travel: { title: "Travel of the output", text: "All movements of the controller output, up and down, added, in ranges of the output per hour. It wears the valve; noise and an oscillation are its usual reasons.", picture: "travel", more: CHECK },
+  reversals: { title: "Reversals of the output", text: "How often in an hour the controller output changes its direction. Each reversal costs a valve with friction more than a long move.", more: CHECK },
+  in_automatic: { title: "In automatic", text: "The share of the time in which the controller computed its output, cascade included. It needs a column of the mode.", more: CHECK },
+  at_limit: { title: "At a limit", text: "The share of the time in which the controller output was at an end of its range. There nothing is controlled, whatever the settings are.", more: CHECK },
+  output_still: { title: "Output at rest", text: "The share of the time in long parts in which the output stayed at one value while the measurement moved. This is what a loop in manual looks like without a column of the mode.", more: CHECK },
+  measurement_still: { title: "Measurement at rest", text: "The share of the time in long parts in which the measurement stayed at one value while the output moved. A frozen transmitter, a blocked line, or a historian that stores too little.", more: CHECK },
+  held: { title: "Repeated measurements", text: "The share of rows whose measurement is that of the row before. A large share means that the historian stores only larger changes, or that the measurement comes in coarse steps.", more: CHECK },
+  noise: { title: "Noise of the measurement", text: "The standard deviation of the measurement from row to row, without slower movements. The controller passes it on to the valve.", more: CHECK },
+  error_ratio: { title: "Mean error, new over old", text: "The mean magnitude of the error in the recorded time with the new settings, over that of the record. It is computed on the identified plant with the set points and disturbances of the record: 0.6 means that four tenths of the error would not have been there.", more: CHECK },
+  valve_size: { title: "Dead band and stick", text: "How far the controller output moves before the valve follows, in the unit of the output. The oscillation lasts as long as this band is there; settings only change its period.", more: CHECK },
+  valve_jump: { title: "Jump when it breaks loose", text: "How far the valve jumps when it overcomes its friction, in the unit of the output. With a jump of 0 the valve has play, but does not stick.", more: CHECK },
 } as const satisfies Record<string, Explanation>;
 
 export type ExplainedName = keyof typeof EXPLANATIONS;

@@ -27,6 +27,7 @@ const shownFactor = (value: number): string => (value === 1 ? "" : formatParamet
 export function shortPlant(outline: Outline | undefined): string {
   const plant = outline?.plant;
   if (outline?.range) return rangeOutline(outline.range);
+  if (outline?.check) return checkOutline(outline.check);
   if (!plant) return DASH;
   const below = denominator(plant);
   if (below === null || typeof plant["K"] !== "number")
@@ -37,6 +38,10 @@ export function shortPlant(outline: Outline | undefined): string {
 
 const rangeOutline = ({ scheduling, points }: NonNullable<Outline["range"]>): string =>
   `${points} points${scheduling ? ` over ${scheduling}` : ""}`;
+
+/** "60 loops, first FIC101". */
+const checkOutline = ({ loops, tag }: NonNullable<Outline["check"]>): string =>
+  `${loops ?? 0} ${loops === 1 ? "loop" : "loops"}${tag ? `, first ${tag}` : ""}`;
 
 function denominator(plant: Plant): string | null {
   if (plant.type === "fopdt") return lag(plant["T"]);
@@ -224,10 +229,10 @@ export function batchColumns(jobs: readonly ListedJob[]): BatchColumn[] {
   );
 }
 
-/** In the order of a column; equal ones and those without a value keep the order of the batch. */
-export function sorted(jobs: ListedJob[], column: BatchColumn, falling: boolean): ListedJob[] {
+/** In the order of a column; equal ones and those without a value keep their order. */
+export function sorted<Row>(rows: readonly Row[], column: { value(row: Row): number | string | null }, falling: boolean): Row[] {
   const sign = falling ? -1 : 1;
-  return [...jobs].sort((a, b) => {
+  return [...rows].sort((a, b) => {
     const [left, right] = [column.value(a), column.value(b)];
     if (left === null || right === null) return Number(left === null) - Number(right === null);
     if (typeof left === "string" || typeof right === "string")

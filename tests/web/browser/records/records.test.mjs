@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
-import { accessibilityViolations, browserTests, dropFile, root } from "../harness.mjs";
+import { accessibilityViolations, browserTests, dropFile, root } from "../../harness.mjs";
 
 /** Above the default, so that a limit of the page's own would be seen. */
 const tests = browserTests(["--max-body", "9MiB"]);

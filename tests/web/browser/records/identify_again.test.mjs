@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { browserTests, dropFile } from "../harness.mjs";
-import { candidatesShown, identified, rows, stepTest } from "../step_record.mjs";
+import { browserTests, dropFile } from "../../harness.mjs";
+import { candidatesShown, identified, rows, stepTest } from "../../step_record.mjs";
 
 const { withPage, jobOf } = browserTests();
 

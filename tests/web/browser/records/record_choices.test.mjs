@@ -1,10 +1,10 @@
 // What else a record holds: a run of several, a further measured input, today's settings of its loop.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { accessibilityViolations, browserTests, dropFile } from "../harness.mjs";
-import { slider } from "../design_page.mjs";
-import { loopUnderPI } from "../made_records.mjs";
-import { candidatesShown, identified } from "../step_record.mjs";
+import { accessibilityViolations, browserTests, dropFile } from "../../harness.mjs";
+import { slider } from "../../design_page.mjs";
+import { loopUnderPI } from "../../made_records.mjs";
+import { candidatesShown, identified } from "../../step_record.mjs";
 
 const tests = browserTests();
 const { withPage, jobOf } = tests;

@@ -1,11 +1,11 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { Emulation, Entry, Result, TuningRequest } from "../../../web/src/api/types.ts";
-import { drawnEntries } from "../../../web/src/charts/drawn.ts";
-import { costOf, emulationFrame } from "../../../web/src/charts/emulation.ts";
-import { hasLinear, responseFrame } from "../../../web/src/charts/responses.ts";
-import { frameToCsv, frameToSvg } from "../../../web/src/plot/export.ts";
-import { wholeView } from "../../../web/src/plot/layout.ts";
+import type { Emulation, Entry, Result, TuningRequest } from "../../../../web/src/api/types.ts";
+import { drawnEntries } from "../../../../web/src/charts/drawn.ts";
+import { costOf, emulationFrame } from "../../../../web/src/charts/emulation.ts";
+import { hasLinear, responseFrame } from "../../../../web/src/charts/responses.ts";
+import { frameToCsv, frameToSvg } from "../../../../web/src/plot/export.ts";
+import { wholeView } from "../../../../web/src/plot/layout.ts";
 import {
   boundWords,
   emulationFacts,
@@ -14,8 +14,8 @@ import {
   scenarioNotes,
   scenarioWords,
   targetWords,
-} from "../../../web/src/words/emulation.ts";
-import { rootsOf, rootWords, transferFunction } from "../../../web/src/words/linear_model.ts";
+} from "../../../../web/src/words/emulation.ts";
+import { rootsOf, rootWords, transferFunction } from "../../../../web/src/words/linear_model.ts";
 
 const units = { time: "min", u: "K", y: "K" };
 const plant = {

@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { Entry, Method, Result, Rimc, TuningRequest } from "../../../web/src/api/types.ts";
-import { fullControllerFrame, interpolate, rimcFrame, rimcRows } from "../../../web/src/charts/rimc.ts";
-import { withLambda } from "../../../web/src/form/tuning_request.ts";
-import { unitNames } from "../../../web/src/words/numbers.ts";
+import type { Entry, Method, Result, Rimc, TuningRequest } from "../../../../web/src/api/types.ts";
+import { fullControllerFrame, interpolate, rimcFrame, rimcRows } from "../../../../web/src/charts/rimc.ts";
+import { withLambda } from "../../../../web/src/form/tuning_request.ts";
+import { unitNames } from "../../../../web/src/words/numbers.ts";
 
 const units = unitNames({ time: "min", u: "%", y: "degC" });
 const rimc: Rimc = {

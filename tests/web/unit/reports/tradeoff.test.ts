@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { Tradeoff, TradeoffFigures } from "../../../web/src/api/types.ts";
-import { degradationFrame, isKnown, levelsFrame, tradeoffFrame, whyUnknown } from "../../../web/src/charts/tradeoff.ts";
+import type { Tradeoff, TradeoffFigures } from "../../../../web/src/api/types.ts";
+import { degradationFrame, isKnown, levelsFrame, tradeoffFrame, whyUnknown } from "../../../../web/src/charts/tradeoff.ts";
 
 const figures = (J_r: number, J_d: number, Deg: number, Ms: number): TradeoffFigures => ({
   J_r,

@@ -1,0 +1,200 @@
+// The screen Check against the real service: files in, the work list and a loop's page out, and the way on to a design.
+import assert from "node:assert/strict";
+import test from "node:test";
+import { accessibilityViolations, browserTests, dropFile, openPage, tracesShown } from "../../harness.mjs";
+
+const tests = browserTests();
+const { withPage } = tests;
+
+/** A loop whose output and measurement swing with a period in s, as CSV. */
+function swinging(period, rows = 900) {
+  const lines = ["time [s];SP;PV;OP;MODE"];
+  for (let row = 0; row < rows; row += 1) {
+    const phase = (2 * Math.PI * row) / (period / 2);
+    const noise = ((row * 7919) % 101) / 101 - 0.5;
+    lines.push([2 * row, "50,0", (50 + 2 * Math.sin(phase) + 0.1 * noise).toFixed(3), (40 + 3 * Math.cos(phase)).toFixed(2), "AUTO"].join(";").replaceAll(".", ","));
+  }
+  return lines.join("\n");
+}
+
+const file = (name, text) => ({ name, mimeType: "text/csv", buffer: Buffer.from(text) });
+const choose = (page, files) => page.locator("input[type=file]").setInputFiles(files);
+const rows = (page) => page.locator(".work-table tbody tr");
+const tags = (page) => rows(page).locator("th a").allInnerTexts();
+const answerOf = async (page) => {
+  const id = /#\/jobs\/([^/?]+)\/check/.exec(page.url())[1];
+  return (await fetch(`${tests.service.base}/v1/jobs/${id}`)).json();
+};
+
+async function checked(page, files) {
+  await choose(page, files);
+  await page.getByRole("button", { name: `Check ${files.length} loop${files.length === 1 ? "" : "s"}` }).click();
+  await rows(page).first().waitFor();
+}
+
+test("dropped files become loops with their tags and kinds, and the list shows what the service answers", async () => {
+  await withPage("#/check", {}, async (page) => {
+    await page.getByRole("heading", { name: "Check loops in operation" }).waitFor();
+    await dropFile(page, ".check-form", "TIC-103.csv", swinging(120));
+    await page.getByRole("textbox", { name: "Name of TIC-103" }).waitFor();
+    await choose(page, [file("FIC-101.csv", swinging(60)), file("short.csv", swinging(60, 40)), file("notes.pdf", "no")]);
+    await page.getByText("2 files added. 1 file without the ending csv, tsv or txt left out.").waitFor();
+    assert.equal(await page.getByLabel("Kind of TIC-103").inputValue(), "temperature");
+    assert.equal(await page.getByLabel("Kind of FIC-101").inputValue(), "flow");
+    assert.equal(await page.getByLabel("Kind of short").inputValue(), "unknown");
+    await page.getByLabel("Lower end of the output of all loops").fill("10");
+    await page.getByLabel("Upper end of the output of all loops").fill("90");
+    await page.getByLabel("Upper end of the output of all loops").press("Tab");
+    await page.getByLabel("Weight of FIC-101").fill("3");
+    await page.getByLabel("Name of this check").fill("Unit 21");
+    assert.deepEqual(await accessibilityViolations(page), []);
+    await page.getByRole("button", { name: "Check 3 loops" }).click();
+    await rows(page).first().waitFor();
+    const { request, result } = await answerOf(page);
+    assert.equal(request.name, "Unit 21");
+    assert.deepEqual(request.loops.map(({ tag, kind, range, weight }) => [tag, kind, range.op, weight]), [
+      ["TIC-103", "temperature", [10, 90], undefined],
+      ["FIC-101", "flow", [10, 90], 3],
+      ["short", undefined, [10, 90], undefined],
+    ]);
+    assert.deepEqual(await tags(page), result.ranking.map(({ loop }) => result.loops[loop].tag));
+    assert.equal(await page.title(), "Unit 21 · Check · Tunewright");
+    const short = rows(page).filter({ hasText: "short" });
+    assert.match(await short.innerText(), /Record not sufficient/);
+    assert.equal(await rows(page).locator("td.spark svg").count(), result.loops.filter(({ excerpt }) => excerpt.t.length > 1).length);
+    assert.deepEqual(await accessibilityViolations(page), []);
+  });
+});
+
+test("a loop's page has its record, its evidence and its figures, and leads from loop to loop", async () => {
+  await withPage("#/check", {}, async (page) => {
+    await checked(page, [file("A.csv", swinging(60)), file("B.csv", swinging(120)), file("C.csv", swinging(200))]);
+    const { result } = await answerOf(page);
+    const order = await tags(page);
+    await page.getByRole("link", { name: order[1], exact: true }).first().click();
+    await page.getByRole("heading", { name: order[1], level: 1 }).waitFor();
+    const shown = result.loops.find(({ tag }) => tag === order[1]);
+    const verdict = await page.locator(".check-loop .verdict").innerText();
+    for (const { detail } of shown.cause.evidence) assert.ok(verdict.includes(detail.replaceAll(/(^|[\s(])-(?=\d)/g, "$1−")), detail);
+    assert.ok((await page.locator(".loop-action").innerText()).includes(shown.action.detail));
+    await tracesShown(page, "Whole record", 3);
+    for (const title of ["Last periods", "Measurement against output", "Spectrum of the error", "Autocorrelation of the error"])
+      await page.getByRole("heading", { name: title }).waitFor();
+    assert.ok((await page.getByRole("row", { name: /^Rows 900/ }).count()) > 0);
+    assert.deepEqual(await accessibilityViolations(page), []);
+    // By the keyboard alone, the focus stays on the way.
+    await page.getByRole("link", { name: `Next › ${order[2]}` }).press("Enter");
+    await page.getByRole("heading", { name: order[2], level: 1 }).waitFor();
+    assert.equal(await page.getByRole("link", { name: /^Next/ }).count(), 0);
+    await page.getByRole("link", { name: `‹ Previous ${order[1]}` }).press("Enter");
+    await page.getByRole("heading", { name: order[1], level: 1 }).waitFor();
+    await page.getByRole("link", { name: `‹ Previous ${order[0]}` }).press("Enter");
+    await page.getByText("1 of 3", { exact: true }).waitFor();
+    await page.getByRole("link", { name: "Work list", exact: true }).press("Enter");
+    await page.waitForFunction((tag) => document.activeElement.textContent === tag, order[0]);
+    await page.keyboard.press("ArrowDown");
+    assert.equal(await page.evaluate(() => document.activeElement.textContent), order[1]);
+  });
+});
+
+test("the example plant is checked with one press, and its map joins the loops with one period", async () => {
+  await withPage("#/check", {}, async (page) => {
+    await page.getByRole("button", { name: "Try the example plant" }).click();
+    await rows(page).first().waitFor();
+    assert.equal(await rows(page).count(), 6);
+    const { result } = await answerOf(page);
+    assert.ok(result.clusters.length > 0, "FIC101 and TIC102 oscillate together");
+    const map = page.getByRole("region", { name: "Loops over their periods" });
+    const group = map.locator("tbody").first();
+    assert.ok((await group.innerText()).includes(result.clusters[0].detail));
+    assert.deepEqual(await group.locator("tr:not(.group) a").allInnerTexts(), result.clusters[0].loops.map((place) => result.loops[place].tag));
+    for (const { master, slave } of result.cascades)
+      await page.getByText(`${result.loops[master].tag} gives ${result.loops[slave].tag} its set point.`).waitFor();
+    const oscillating = result.loops.filter(({ shape }) => shape.period > 0);
+    assert.equal(await map.locator("td.ridge svg").count(), oscillating.length);
+    await group.locator("a").first().click();
+    await page.getByRole("heading", { name: result.loops[result.clusters[0].loops[0]].tag, level: 1 }).waitFor();
+    await page.getByText("It oscillates together with").waitFor();
+  });
+});
+
+test("a record goes on to Identify, and back the check is as it was", async () => {
+  await withPage("#/check", {}, async (page) => {
+    await checked(page, [file("FIC-7.csv", swinging(60))]);
+    await page.getByRole("link", { name: "FIC-7", exact: true }).first().click();
+    const sent = page.waitForRequest((request) => request.url().endsWith("/v1/identify"));
+    await page.getByRole("button", { name: "Identify from this record" }).click();
+    const { record, name } = (await sent).postDataJSON();
+    assert.equal(name, "FIC-7");
+    assert.equal(record.csv, swinging(60));
+    assert.match(page.url(), /#\/identify$/);
+    await page.goBack();
+    await page.getByRole("heading", { name: "FIC-7", level: 1 }).waitFor();
+  }, ["422"]);
+});
+
+test("checks are found again: in the form, among the jobs, and under the address of a design", async () => {
+  await withPage("#/check", {}, async (page) => {
+    await checked(page, [file("LIC-9.csv", swinging(80))]);
+    const { id } = await answerOf(page);
+    await page.getByRole("link", { name: "New check" }).click();
+    const earlier = page.getByRole("region", { name: "Earlier checks" });
+    await earlier.getByRole("link", { name: `Check ${id.slice(0, 8)}` }).click();
+    await rows(page).first().waitFor();
+    await page.goto(`${tests.service.base}/#/jobs/${id}/design`);
+    await page.waitForURL((url) => url.hash === `#/jobs/${id}/check`);
+    await rows(page).first().waitFor();
+    await page.goto(`${tests.service.base}/#/jobs`);
+    await page.getByRole("link", { name: `Duplicate Job ${id.slice(0, 8)}` }).click();
+    await page.getByLabel("Name of LIC-9").waitFor();
+    assert.match(page.url(), new RegExp(`#/check\\?from=${id}$`));
+    // Changed and checked again.
+    await page.getByLabel("Kind of LIC-9").selectOption("level");
+    await page.getByLabel("LIC-9 smooths flows").check();
+    await page.getByRole("button", { name: "Check 1 loop" }).click();
+    await page.waitForURL((url) => url.hash.endsWith("/check"));
+    await rows(page).first().waitFor();
+    const [loop] = (await answerOf(page)).request.loops;
+    assert.deepEqual([loop.kind, loop.averaging, loop.csv], ["level", true, swinging(80)]);
+  });
+});
+
+test("faults stand at their fields, files that are not UTF-8 are read as the service reads them", async () => {
+  await withPage("#/check", {}, async (page) => {
+    await page.getByRole("button", { name: "Check the loops" }).click();
+    await page.getByRole("group", { name: "Problems to fix" }).getByText("There is no loop yet.").waitFor();
+    const latin = Buffer.from(swinging(60).replace("PV", "PV [°C]"), "latin1");
+    await choose(page, [{ name: "Kühlung.csv", mimeType: "text/csv", buffer: latin }]);
+    await page.getByLabel("Name of Kühlung").waitFor();
+    await page.getByText("How the files are read").click();
+    await page.locator(".preview").getByText("PV [°C]").first().waitFor();
+    await page.getByLabel("Lower end of the output of Kühlung").fill("5");
+    await page.getByRole("button", { name: "Check 1 loop" }).click();
+    await page.getByRole("group", { name: "Problems to fix" }).getByText("The range of the output has one end only").waitFor();
+    assert.equal(await page.getByLabel("Upper end of the output of Kühlung").getAttribute("aria-invalid"), "true");
+    assert.deepEqual(await accessibilityViolations(page), []);
+    await page.getByLabel("Upper end of the output of Kühlung").fill("95");
+    await page.getByLabel("Measurement (PV)").selectOption({ label: "PV [°C]" });
+    await page.getByRole("button", { name: "Check 1 loop" }).click();
+    await rows(page).first().waitFor();
+    const [loop] = (await answerOf(page)).request.loops;
+    assert.deepEqual([loop.range.op, loop.columns], [[5, 95], { y: "PV [°C]" }]);
+  });
+});
+
+test("files that are too long together are refused before they are sent", async () => {
+  const opened = await openPage(tests.browser);
+  const { page } = opened;
+  await page.route("**/healthz", (route) => route.fulfill({ json: { status: "ok", max_body_bytes: 20_000 } }));
+  await page.goto(`${tests.service.base}/#/check`);
+  await choose(page, [file("A.csv", swinging(60))]);
+  await page.getByText(/^The records have 0\.0 MiB together; one check takes at most 0\.0 MiB\./).waitFor();
+  let sent = 0;
+  page.on("request", (request) => (sent += request.method() === "POST" && request.url().endsWith("/v1/jobs") ? 1 : 0));
+  await page.getByRole("button", { name: "Check 1 loop" }).click();
+  await page.getByRole("group", { name: "Problems to fix" }).waitFor();
+  assert.equal(sent, 0);
+  assert.deepEqual(await opened.faults(), []);
+  await opened.close();
+});
+

@@ -1,0 +1,88 @@
+// A checked loop on a page of its own: cause and evidence, what to do, its pictures and figures; and the way to the next
+// loop of the work list.
+import type { CheckLoop, LoopCheck, Units } from "../api/types.ts";
+import { loopFrames } from "../charts/loop_check.ts";
+import { h, passFocus } from "../dom.ts";
+import { plotGrid } from "../plot/grid.ts";
+import { cureCard } from "./cure_card.ts";
+import { actionCard, causeCard, figuresCard } from "./loop_cards.ts";
+import type { LoopShown } from "./loop_cards.ts";
+
+/** Where a loop is in the work list. */
+export interface LoopWays {
+  /** Places of the loops in the order of the work list. */
+  order: readonly number[];
+  /** The address of the work list. */
+  list: string;
+}
+
+/** The loop as it was sent, with what can be done with its record. */
+export interface SentLoop {
+  loop: CheckLoop | null;
+  units: Units | undefined;
+  steps: HTMLElement[];
+}
+
+export interface LoopView {
+  element: HTMLElement;
+  show(shown: LoopShown, ways: LoopWays, sent: SentLoop): void;
+  /** It is not on the screen any more. */
+  leave(): void;
+  dispose(): void;
+}
+
+export function loopView(announce: (sentence: string) => void): LoopView {
+  const back = h("a", { href: "#/check" }, "Work list");
+  const before = h("a", { href: "#/check" });
+  const after = h("a", { href: "#/check" });
+  const at = h("span", { class: "hint" });
+  const cards = h("div", { class: "loop-cards" });
+  const cure = cureCard(announce);
+  const side = h("div", { class: "loop-side" });
+  const plots = plotGrid(announce);
+  const element = h(
+    "div",
+    { class: "check-loop" },
+    h("nav", { class: "loop-ways", "aria-label": "Loops" }, back, before, at, after),
+    cards,
+    cure.element,
+    h("div", { class: "loop-body" }, plots.element, side),
+  );
+
+  /** Its name stays in the accessibility tree: "Next loop FIC101". */
+  function lead(link: HTMLAnchorElement, word: string, place: number | undefined, { content, address }: LoopShown): void {
+    if (place === undefined) passFocus(link, link === before ? after : before, back);
+    link.hidden = place === undefined;
+    if (place === undefined) return;
+    link.href = address(place);
+    link.replaceChildren(word, h("span", { class: "visually-hidden" }, ` ${content.loops[place]!.tag}`));
+  }
+
+  function draw(loop: LoopCheck, { units }: LoopShown): void {
+    plots.setSubject(loop.tag);
+    const frames = Object.entries(loopFrames(loop, units));
+    for (const [key, frame] of frames) plots.show(key, frame);
+    plots.element.hidden = frames.every(([, frame]) => frame === null);
+  }
+
+  return {
+    element,
+    show(shown, { order, list }, sent) {
+      const { loop, place } = shown.row;
+      const index = order.indexOf(place);
+      back.href = list;
+      lead(before, "‹ Previous", index < 0 ? undefined : order[index - 1], shown);
+      lead(after, "Next ›", index < 0 ? undefined : order[index + 1], shown);
+      at.textContent = index < 0 ? "not in the list as filtered" : `${index + 1} of ${order.length}`;
+      cards.replaceChildren(causeCard(shown), actionCard(shown, sent.steps));
+      side.replaceChildren(figuresCard(shown));
+      draw(loop, shown);
+      cure.show(loop, sent.loop, sent.units);
+    },
+    leave: cure.dispose,
+    dispose() {
+      cure.dispose();
+      plots.dispose();
+    },
+  };
+}

@@ -197,10 +197,9 @@ private:
 
     /// The loop's own oscillation, whose phase drifts.
     bool hardly_damped() const {
-        const bool resonant = (peak_.regularity >= kResonant && peak_.persistence >= kPersistent &&
-                               peak_.cycles >= kCyclesOfResonance) ||
-                              (peak_.regularity >= kLongResonant && peak_.persistence >= kLongPersistent &&
-                               peak_.cycles >= kLongCycles);
+        const bool resonant =
+            (peak_.regularity >= kResonant && peak_.persistence >= kPersistent && peak_.cycles >= kCyclesOfResonance) ||
+            (peak_.regularity >= kLongResonant && peak_.persistence >= kLongPersistent && peak_.cycles >= kLongCycles);
         return resonant && drifts_;
     }
 

@@ -154,6 +154,22 @@ class ClientTest(unittest.TestCase):
         with self.assertRaisesRegex(LookupError, "work list"):
             self.client.wait(check.job["id"]).best
 
+    def test_a_check_of_a_file_judges_its_loops_together_and_is_compared_later(self):
+        head = "Time,FIC1.PV,FIC1.OP,FIC2.PV,FIC2.OP"
+        lines = ["%d,%.2f,%d,%.2f,%d" % (t, 20 + 3 * t % 17 * 0.25, 30 + t % 7, 20 + 5 * t % 17 * 0.25, 30 + t % 9)
+                 for t in range(400)]
+        told = []
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "plant.csv")
+            path.write_text("\n".join([head, *lines]) + "\n")
+            checks = [self.client.check(path, lambda *at: told.append(at), name="unit 7") for _ in range(2)]
+        for check in checks:
+            self.assertEqual(sorted(loop["tag"] for loop in check.work_list), ["FIC1", "FIC2"])
+            self.assertTrue(check["complete"])
+        self.assertEqual(told, [(1, 2), (2, 2)] * 2)
+        changes = self.client.changes(checks[0], checks[1])["changes"]
+        self.assertEqual([each["change"]["significant"] for each in changes], [False, False])
+
     def test_leaving_the_rows_early_cancels_the_rest(self):
         rows = self.client.batch([QUICK, LONG, LONG, LONG], name="left")
         self.assertEqual(next(rows)["status"], "succeeded")

@@ -195,7 +195,17 @@ private:
         return out;
     }
 
+    /// The loop's own oscillation, whose phase drifts.
+    bool hardly_damped() const {
+        const bool resonant = (peak_.regularity >= kResonant && peak_.persistence >= kPersistent &&
+                               peak_.cycles >= kCyclesOfResonance) ||
+                              (peak_.regularity >= kLongResonant && peak_.persistence >= kLongPersistent &&
+                               peak_.cycles >= kLongCycles);
+        return resonant && drifts_;
+    }
+
     std::optional<Cause> by_dead_band() {
+        if (hardly_damped()) return std::nullopt;
         const auto fit = fit_hysteresis(q_.samples.y, q_.samples.r, *bank_, peak_.period);
         const bool line = line_ >= kLine && peak_.cycles >= 8;
         if (!fit || fit->plant_gain * sign_ <= 0 || line || fit->turns < 2) return std::nullopt;
@@ -227,10 +237,7 @@ private:
             out.period = peak_.line_period * q_.samples.step;
             return out;
         }
-        const bool resonant =
-            (peak_.regularity >= kResonant && peak_.persistence >= kPersistent && peak_.cycles >= kCyclesOfResonance) ||
-            (peak_.regularity >= kLongResonant && peak_.persistence >= kLongPersistent && peak_.cycles >= kLongCycles);
-        if (resonant && drifts_) {
+        if (hardly_damped()) {
             add("resonance", peak_.persistence, kPersistent,
                 "After three periods the oscillation still has a correlation of " + figure_text(peak_.persistence) +
                     " with itself, its phase drifts, and no valve explains it: the loop itself hardly damps it.");

@@ -1,21 +1,27 @@
 #include "engine/check/clusters.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <optional>
 
 #include "engine/number_text.h"
 
 namespace tunewright::check {
 namespace {
 
-constexpr double kSamePeriod = 0.05;       // relative
-constexpr double kSameWave = 0.6;          // of the correlation at the best lag
+constexpr double kSamePeriod = 0.04;       // relative
+constexpr double kSameWave = 0.7;          // of the correlation at the best lag, in each part
+constexpr double kSamePhase = 0.1;         // of the period
+constexpr std::size_t kParts = 6;          // of the common time
 constexpr std::size_t kFewestPoints = 96;  // of the common time
 constexpr double kSameSpectrum = 0.85;     // cosine of the powers, for records without a common time
 constexpr double kSlave = 0.99;            // correlation of a set point and an output
-constexpr double kClearSource = 1.3;       // ratio of the oscillation's shares that makes a source stand out
+constexpr std::size_t kPast = 4;           // values of the wave, a half of a period
+constexpr double kClearLead = 0.1;         // in ln of the residual's square, over all others
+constexpr double kNoMaker = 0.5;           // the same: a loop without a cause of its own is not the source
 
 float at(const Shape& shape, double time) {
     const double place = (time - shape.wave_from) / shape.wave_step;
@@ -26,15 +32,17 @@ float at(const Shape& shape, double time) {
 }
 
 struct Overlap {
-    double correlation = 0;
+    double correlation = 0, lag = 0;  ///< s
     std::size_t points = 0;
 };
 
-/// The correlation of b shifted by `lag` with a, over the time that both have.
-Overlap correlation(const Shape& a, const Shape& b, double lag) {
+/// The correlation of b shifted by `lag` with a, over the part `part` of the time that both have.
+Overlap correlation(const Shape& a, const Shape& b, double lag, int part) {
     double aa = 0, bb = 0, ab = 0;
-    Overlap out;
-    for (std::size_t i = 0; i < a.wave.size(); ++i) {
+    Overlap out{.lag = lag};
+    const std::size_t from = a.wave.size() * std::size_t(part) / kParts,
+                      to = a.wave.size() * std::size_t(part + 1) / kParts;
+    for (std::size_t i = from; i < to; ++i) {
         const float other = at(b, a.wave_from + a.wave_step * static_cast<double>(i) + lag);
         if (std::isnan(other)) continue;
         aa += double(a.wave[i]) * a.wave[i];
@@ -46,15 +54,29 @@ Overlap correlation(const Shape& a, const Shape& b, double lag) {
     return out;
 }
 
-bool same_wave(const Shape& a, const Shape& b, double period) {
-    double best = 0;
-    std::size_t points = 0;
-    for (double lag = -0.5 * period; lag <= 0.5 * period; lag += period / 24) {
-        const Overlap here = correlation(a, b, lag);
-        points = std::max(points, here.points);
-        best = std::max(best, std::abs(here.correlation));
+Overlap best_lag(const Shape& a, const Shape& b, double period, int part) {
+    Overlap best;
+    for (double lag = -0.5 * period; lag < 0.5 * period; lag += period / 24) {
+        const Overlap here = correlation(a, b, lag, part);
+        if (here.points >= kFewestPoints / kParts && here.correlation > best.correlation) best = here;
     }
-    return points >= kFewestPoints && best > kSameWave;
+    return best;
+}
+
+/// True if the waves keep one phase in every part of the common time: two loops that only happen to have one period
+/// drift against each other.
+bool same_wave(const Shape& a, const Shape& b, double period) {
+    std::optional<double> first;
+    int known = 0;
+    for (int part = 0; part < int(kParts); ++part) {
+        const Overlap best = best_lag(a, b, period, part);
+        if (best.points == 0) continue;
+        ++known;
+        if (best.correlation < kSameWave) return false;
+        if (!first) first = best.lag;
+        if (std::abs(std::remainder(best.lag - *first, period)) > kSamePhase * period) return false;
+    }
+    return known >= 3;
 }
 
 double cosine(const std::vector<float>& a, const std::vector<float>& b) {
@@ -79,32 +101,83 @@ bool together(const LoopCheck& a, const LoopCheck& b) {
     return cosine(a.shape.spectrum, b.shape.spectrum) > kSameSpectrum;
 }
 
-/// How likely the oscillation begins here: a valve or a loop that makes it, the most distorted wave, the largest share.
-double source_score(const LoopCheck& check) {
-    double score = check.oscillation.periods.front().share * (1 + std::max(0.0F, check.shape.nonlinearity));
-    switch (check.cause.verdict) {
-        case Verdict::stiction:
-        case Verdict::backlash: return 4 * score;
-        case Verdict::tight: return 3 * score;
-        case Verdict::external: return 0.5 * score;
-        default: return score;
+/// The wave of b at the places of a, `lag` later; empty where b has none.
+std::vector<double> on_clock_of(const Shape& a, const Shape& b) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < a.wave.size(); ++i)
+        out.push_back(double(at(b, a.wave_from + a.wave_step * static_cast<double>(i))));
+    return out;
+}
+
+/// Least squares of each value on the kPast values before it of the columns; the residual's square.
+double residual_square(const std::vector<double>& y, const std::vector<const std::vector<double>*>& columns) {
+    const auto width = Eigen::Index(kPast * columns.size());
+    Eigen::MatrixXd A = 1e-9 * Eigen::MatrixXd::Identity(width, width);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(width), x(width);
+    double squares = 0;
+    for (std::size_t i = kPast; i < y.size(); ++i) {
+        Eigen::Index k = 0;
+        for (const auto* column : columns)
+            for (std::size_t lag = 1; lag <= kPast; ++lag) x[k++] = (*column)[i - lag];
+        if (!x.allFinite() || !std::isfinite(y[i])) continue;
+        A += x * x.transpose();
+        b += x * y[i];
+        squares += y[i] * y[i];
     }
+    return std::max(1e-12, squares - b.dot(A.ldlt().solve(b)));
+}
+
+/// ln of the residual's square that the past of `cause` removes from what the past of `effect` itself leaves (Granger
+/// 1969, Econometrica 37, 424): large if the cause comes first.
+double leads(const Shape& cause, const Shape& effect) {
+    const std::vector<double> own(effect.wave.begin(), effect.wave.end()), other = on_clock_of(effect, cause);
+    std::vector<double> kept(own);
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        if (!std::isfinite(other[i])) kept[i] = NAN;
+    return std::log(residual_square(kept, {&kept}) / residual_square(kept, {&kept, &other}));
+}
+
+bool makes_cycles(const LoopCheck& check) {
+    return check.cause.verdict == Verdict::stiction || check.cause.verdict == Verdict::backlash ||
+           check.cause.verdict == Verdict::tight;
+}
+
+/// How much more each loop leads the others than they lead it; without a common time the share of the oscillation.
+std::vector<double> source_scores(std::span<const LoopCheck* const> loops, const Cluster& cluster) {
+    std::vector<double> scores(cluster.loops.size(), 0.0);
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+        const LoopCheck& one = *loops[cluster.loops[i]];
+        for (std::size_t k = 0; k < scores.size(); ++k) {
+            const LoopCheck& other = *loops[cluster.loops[k]];
+            if (i == k || !share_time(one.shape, other.shape)) continue;
+            const double lead = leads(one.shape, other.shape);
+            scores[i] += lead;
+            scores[k] -= lead;
+        }
+        scores[i] += makes_cycles(one) ? 0 : -kNoMaker;
+    }
+    return scores;
 }
 
 void find_source(std::span<const LoopCheck* const> loops, Cluster& cluster) {
-    std::ranges::stable_sort(cluster.loops, std::greater<>(), [&](std::size_t i) { return source_score(*loops[i]); });
-    const LoopCheck &first = *loops[cluster.loops[0]], &second = *loops[cluster.loops[1]];
+    const auto scores = source_scores(loops, cluster);
+    std::vector<std::size_t> order(scores.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return scores[i]; });
+    std::vector<std::size_t> sorted;
+    for (const std::size_t i : order) sorted.push_back(cluster.loops[i]);
+    cluster.loops = std::move(sorted);
+    const LoopCheck& first = *loops[cluster.loops[0]];
     const std::string period = figure_text(cluster.period) + " s";
-    if (source_score(first) < kClearSource * source_score(second)) {
+    const bool clear = scores[order[0]] - scores[order[1]] > kClearLead;
+    if (!clear || !makes_cycles(first)) {
         cluster.why = "No loop stands out as the source of the oscillation with a period of " + period + ": put " +
                       first.tag + " in manual for some periods and see whether the others stop.";
         return;
     }
     cluster.source = cluster.loops[0];
-    const bool own = first.cause.verdict == Verdict::stiction || first.cause.verdict == Verdict::backlash ||
-                     first.cause.verdict == Verdict::tight;
-    cluster.why = own ? "The oscillation with a period of " + period + " is made in " + first.tag + " itself."
-                      : "The oscillation with a period of " + period + " is strongest in " + first.tag + ".";
+    cluster.why = "The oscillation with a period of " + period + " is made in " + first.tag +
+                  " itself, and its error moves before those of the others.";
 }
 
 }  // namespace

@@ -154,10 +154,10 @@ struct Shape {
     std::vector<float> spectrum;           ///< share of the error's power in each of kShapeBands bands of period
     std::vector<float> wave;               ///< the error's last periods, in deviations, a row every wave_step
     double wave_from = 0, wave_step = 0;   ///< s, like from
-    std::vector<float> set_point, output;  ///< means of kShapePoints stretches; empty: not recorded or constant
+    std::vector<float> set_point, output;  ///< means of kShapeMeans stretches; empty: not recorded or constant
     float nonlinearity = 0;                ///< how far the wave is from a linear series (Thornhill 2005)
 };
-inline constexpr int kShapeBands = 96, kShapePoints = 512;
+inline constexpr int kShapeBands = 96, kShapePoints = 1024, kShapeMeans = 256;
 /// The bands of Shape::spectrum are even in ln(period), s.
 inline constexpr double kShortestBand = 1, kLongestBand = 1e5;
 

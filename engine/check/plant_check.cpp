@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/check/action.h"
 #include "engine/check/clusters.h"
 
 namespace tunewright::check {
@@ -67,12 +68,34 @@ int urgency(const LoopCheck& check, bool source) {
     }
 }
 
+void explain_by_source(LoopCheck& check, const LoopCheck& source) {
+    Cause& cause = check.cause;
+    if (cause.verdict == Verdict::external)
+        cause.alternatives.clear();
+    else
+        cause.alternatives = {cause.verdict};
+    cause.verdict = Verdict::external;
+    cause.confidence = Confidence::likely;
+    cause.size = cause.jump = no_figure("The valve of another loop makes the cycle.");
+    cause.why_open.clear();
+    cause.evidence.insert(cause.evidence.begin(),
+                          {"moves-with-source",
+                           check.shape.period,
+                           {},
+                           "The loop oscillates together with " + source.tag + ", where the oscillation is made."});
+    check.action = action_for(check);
+}
+
 }  // namespace
 
-PlantCheck check_plant(std::span<const LoopCheck* const> loops, bool cluster) {
+PlantCheck check_plant(std::span<LoopCheck* const> loops, bool cluster) {
     PlantCheck plant;
-    plant.cascades = cascades_of(loops);
-    if (cluster) plant.clusters = clusters_of(loops);
+    const std::vector<const LoopCheck*> seen(loops.begin(), loops.end());
+    plant.cascades = cascades_of(seen);
+    if (cluster) plant.clusters = clusters_of(seen);
+    for (const Cluster& found : plant.clusters)
+        for (const std::size_t i : found.loops)
+            if (found.source && i != *found.source) explain_by_source(*loops[i], *loops[*found.source]);
     std::vector<bool> source(loops.size(), false);
     for (std::size_t i = 0; i < loops.size(); ++i) plant.ranking.push_back(rank_of(i, *loops[i]));
     for (const Cluster& found : plant.clusters) {

@@ -41,7 +41,9 @@ struct PlantCheck {
     std::vector<Rank> ranking;  ///< first the one to mend first; every loop once
 };
 
-/// `cluster` false: each loop is ranked on its own. Loops without a common time are compared by their spectra alone.
-PlantCheck check_plant(std::span<const LoopCheck* const> loops, bool cluster = true);
+/// `cluster` false: each loop is ranked on its own. Loops without a common time are compared by their spectra alone. A
+/// loop that oscillates with the source of its group gets the cause `external`, with that source as evidence: by itself
+/// it may look like a sticking valve.
+PlantCheck check_plant(std::span<LoopCheck* const> loops, bool cluster = true);
 
 }  // namespace tunewright::check

@@ -8,13 +8,13 @@
 namespace tunewright::check {
 namespace {
 
-constexpr double kPointsPerPeriod = 12;
+constexpr double kPointsPerPeriod = 8;
 
-/// Means of kShapePoints even stretches, in deviations from their own mean; empty for a constant series.
+/// Means of kShapeMeans even stretches, in deviations from their own mean; empty for a constant series.
 std::vector<float> thinned(const std::vector<double>& values) {
     const std::size_t n = values.size();
-    if (n < kShapePoints) return {};
-    std::vector<double> means(kShapePoints);
+    if (n < kShapeMeans) return {};
+    std::vector<double> means(kShapeMeans);
     for (std::size_t k = 0; k < means.size(); ++k) {
         const std::size_t from = k * n / means.size(), to = (k + 1) * n / means.size();
         means[k] = mean(std::span(values).subspan(from, to - from));

@@ -30,10 +30,13 @@ private:
 
 }  // namespace
 
-check::PlantCheck judged_together(const std::vector<CheckedLoop>& loops, bool cluster) {
-    std::vector<const check::LoopCheck*> all;
-    for (const CheckedLoop& loop : loops) all.push_back(&loop);
-    return check::check_plant(all, cluster);
+check::PlantCheck judged_together(std::vector<CheckedLoop>& loops, bool cluster) {
+    std::vector<check::LoopCheck*> all;
+    for (CheckedLoop& loop : loops) all.push_back(&loop);
+    check::PlantCheck plant = check::check_plant(all, cluster);
+    for (CheckedLoop& loop : loops)
+        if (loop.cure && loop.action.code == check::ActionCode::find_source) loop.cure.reset();
+    return plant;
 }
 
 Expected<CheckResult> ask_check(const CheckQuestion& question, const RunControl& control) {

@@ -27,8 +27,8 @@ struct CheckResult {
     bool partial = false;  ///< stopped: the loops that were not reached are insufficient_data
 };
 
-/// The judgement of all loops together.
-check::PlantCheck judged_together(const std::vector<CheckedLoop>& loops, bool cluster);
+/// The judgement of all loops together, which may change the cause of one that another explains.
+check::PlantCheck judged_together(std::vector<CheckedLoop>& loops, bool cluster);
 
 /// Errors: those of check_loop(), with the loop's place before `where`; a stop before the first loop.
 Expected<CheckResult> ask_check(const CheckQuestion& question, const RunControl& control);

@@ -40,10 +40,7 @@ LoopCure with_settings(const TuningResult& result, const TuningEntry& entry, std
     cure.settings = std::get<IdealPid>(entry.evaluation->controller);
     if (result.model) cure.plant = result.model->plant;
     if (const auto worst = worst_Ms(entry)) cure.worst_Ms = worst->value;
-    if (entry.replay && !entry.replay->refused)
-        cure.error_ratio = entry.replay->IAE_ratio;
-    else
-        cure.error_ratio = no_figure(entry.replay ? reason_of(*entry.replay->refused) : "The record has no set point.");
+    cure.error_ratio = entry.replay ? Figure(entry.replay->IAE_ratio) : no_figure("The record has no set point.");
     cure.detail =
         "The record shows the plant: with the new settings Ms stays within its limit on every plant that fits "
         "the record.";
@@ -76,6 +73,9 @@ std::optional<LoopCure> cure_of(const check::LoopQuestion& question, const check
     if (!holds_on_region(*entry))
         return with_test(check, "The record leaves the plant so open that no settings are safe on all that fit it.",
                          std::move(today));
+    // What cannot be replayed over the recorded time has a plant that the record leaves open.
+    if (entry->replay && entry->replay->refused)
+        return with_test(check, reason_of(*entry->replay->refused), std::move(today));
     return with_settings(*result, *entry, std::move(today));
 }
 

@@ -1,8 +1,9 @@
-// A plant of forty loops: ten with sticking valves, ten sluggish, ten tight, ten disturbed by a sticking neighbour. From
-// their records to the work list, to causes, and to settings that hold Ms on the true plants.
+// A plant of forty loops: ten with sticking valves, ten sluggish, ten tight, ten disturbed by a sticking neighbour.
+// From their records to the work list, to causes, and to settings that hold Ms on the true plants.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "engine/evaluation/evaluate.h"
@@ -44,7 +45,8 @@ SickLoop made(const char* name, int k, Verdict cause, const LoopSetUp& s, const 
     return loop;
 }
 
-/// What the neighbour's error does to this loop's load: the sticking loop's measurement, about its set point, as % of u.
+/// What the neighbour's error does to this loop's load: the sticking loop's measurement, about its set point, as % of
+/// u.
 std::vector<double> disturbance_of(const SickLoop& loop, double share) {
     std::vector<double> out;
     const Record& record = loop.question.record;
@@ -89,7 +91,6 @@ const CheckResult& result() {
     static const CheckResult found = [] {
         CheckQuestion question;
         for (const SickLoop& loop : sick_plant()) question.loops.push_back(loop.question);
-        question.settings = true;
         return *ask_check(question, {});
     }();
     return found;
@@ -105,26 +106,23 @@ TEST(SickPlant, TheCausesAreRight) {
                         (plant[i].cause == Verdict::stiction && cause.verdict == Verdict::backlash);
         right[plant[i].cause] += ok ? 1 : 0;
         sure_and_wrong += !ok && cause.confidence == Confidence::sure ? 1 : 0;
-        if (!ok) std::printf("%s: %d %d\n", plant[i].question.tag.c_str(), int(cause.verdict), int(cause.confidence));
     }
     EXPECT_GE(right[Verdict::stiction], 9);
     EXPECT_GE(right[Verdict::sluggish], 9);
     EXPECT_GE(right[Verdict::tight], 9);
+    EXPECT_GE(right[Verdict::external], 9);
     EXPECT_EQ(sure_and_wrong, 0);
 }
 
 TEST(SickPlant, DisturbedLoopsComeAfterTheirSource) {
     const auto plant = sick_plant();
     int together = 0, after = 0;
-    for (const Cluster& cluster : result().plant.clusters) {
-        std::printf("cluster %g s source %d:", cluster.period, cluster.source ? int(*cluster.source) : -1);
-        for (auto i : cluster.loops) std::printf(" %s", plant[i].question.tag.c_str());
-        std::printf("\n");
-    }
+    EXPECT_LE(result().plant.clusters.size(), 4) << "loops that only happen to have one period are no group";
     for (std::size_t i = 0; i < plant.size(); ++i) {
         if (!plant[i].neighbour) continue;
         for (const Cluster& cluster : result().plant.clusters)
-            if (std::ranges::count(cluster.loops, i) && std::ranges::count(cluster.loops, *plant[i].neighbour)) ++together;
+            if (std::ranges::count(cluster.loops, i) && std::ranges::count(cluster.loops, *plant[i].neighbour))
+                ++together;
         for (const Rank& rank : result().plant.ranking)
             if (rank.loop == i && rank.after == plant[i].neighbour) ++after;
     }
@@ -147,26 +145,43 @@ TEST(SickPlant, TheWorkListBeginsWithTheSourcesAndEndsWithTheDisturbed) {
     EXPECT_GE(last, 9);
 }
 
+/// Of a few of each kind: identification takes seconds.
 TEST(SickPlant, NewSettingsHoldMsOnTheTruePlants) {
     const auto plant = sick_plant();
-    int designed = 0;
+    CheckQuestion question;
+    std::vector<std::size_t> places;
     for (std::size_t i = 0; i < plant.size(); ++i) {
-        const CheckedLoop& loop = result().loops[i];
-        if (loop.cause.verdict == Verdict::stiction) {
-            EXPECT_FALSE(loop.cure) << "a sticking valve is not tuned";
+        if (i % kOfEach > 3) continue;
+        question.loops.push_back(plant[i].question);
+        places.push_back(i);
+    }
+    question.settings = true;
+    const auto asked = ask_check(question, {});
+    ASSERT_TRUE(asked);
+    int designed = 0, tests = 0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const CheckedLoop& loop = asked->loops[k];
+        const SickLoop& true_loop = plant[places[k]];
+        if (true_loop.cause == Verdict::stiction || true_loop.neighbour) {
+            EXPECT_FALSE(loop.cure) << loop.tag << ": neither a valve nor a disturbance is tuned away";
+            continue;
         }
-        if (!loop.cure) continue;
+        ASSERT_TRUE(loop.cure) << loop.tag;
         EXPECT_TRUE(loop.cure->settings.has_value() != loop.cure->test.has_value());
-        if (!loop.cure->settings) { std::printf("%s: %s\n", loop.tag.c_str(), loop.cure->detail.c_str()); continue; }
+        if (loop.cure->test) {
+            ++tests;
+            EXPECT_GT(loop.cure->test->size, 0);
+            EXPECT_GT(loop.cure->test->hold, 2 * true_loop.truth.plant.L);
+            continue;
+        }
         ++designed;
-        if (const auto* f = std::get_if<Fopdt>(&*loop.cure->plant)) std::printf("%s true K %.2f T %.1f L %.0f model K %.2f T %.1f L %.1f ratio %.2f\n", loop.tag.c_str(), plant[i].truth.plant.K, plant[i].truth.plant.T, plant[i].truth.plant.L, f->K, f->T, f->L, loop.cure->error_ratio.value_or(-1));
-        else std::printf("%s true K %.2f T %.1f L %.0f other model, ratio %.2f %s\n", loop.tag.c_str(), plant[i].truth.plant.K, plant[i].truth.plant.T, plant[i].truth.plant.L,loop.cure->error_ratio.value_or(-1), loop.cure->error_ratio.why.c_str());
-        const auto truth = evaluate(PlantModel(Plant(plant[i].truth.plant)), Controller(*loop.cure->settings), {});
+        const auto truth = evaluate(PlantModel(Plant(true_loop.truth.plant)), Controller(*loop.cure->settings), {});
         ASSERT_TRUE(truth);
         ASSERT_TRUE(truth->robustness.stable) << loop.tag;
         EXPECT_LE(*truth->robustness.Ms, limits::kDefaultMs * 1.02) << loop.tag;
     }
-    EXPECT_GE(designed, 16);
+    EXPECT_EQ(designed + tests, 8);
+    EXPECT_GE(designed, 4);
 }
 
 }  // namespace

@@ -80,7 +80,8 @@ inline Record simulated(const LoopSetUp& s, std::uint64_t seed, const std::vecto
         double disturbed = load + (i > 0.02 * s.rows ? s.bias : 0);
         if (s.sine > 0) disturbed += s.sine * std::sin(2 * std::numbers::pi * t / s.sine_period);
         if (!further_load.empty()) disturbed += further_load[std::size_t(i)];
-        if (s.set_point_moves > 0 && i % (s.rows / (s.set_point_moves + 1)) == s.rows / (s.set_point_moves + 1) - 1)
+        const int apart = s.set_point_moves > 0 ? s.rows / (s.set_point_moves + 1) : 0;
+        if (apart > 0 && i % apart == apart - 1 - int(2654435761U * seed % std::uint64_t(apart / 2)))
             r = r > 50 ? 50 : 50 + s.set_point_size;
         const double v = s.band > 0 ? valve(u) : u;
         held[std::size_t(i) % held.size()] = v - 50 + disturbed;

@@ -6,6 +6,7 @@ int main(int argc, char** argv) {
     CommandTree tree;
     add_serve_command(tree);
     add_loop_commands(tree);
+    add_check_command(tree);
     add_list_commands(tree);
     add_operator_commands(tree);
     add_tree_commands(tree);

@@ -1,6 +1,7 @@
 #include "api/batch/pieces.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "api/csv/text.h"
 
@@ -37,21 +38,20 @@ bool Lines::feed(std::string_view bytes, const Take& take) {
 }
 
 bool Lines::feed_known(std::string_view bytes, const Take& take) {
+    if (code_ == Code::bytes) return feed_bytes(bytes, take);
     std::string joined;
-    if (code_ != Code::bytes && (!half_.empty() || bytes.size() % 2 == 1)) {
+    if (!half_.empty() || bytes.size() % 2 == 1) {
         joined = half_ + std::string(bytes);
         half_ = joined.size() % 2 == 1 ? joined.substr(joined.size() - 1) : "";
         joined.resize(joined.size() - half_.size());
         bytes = joined;
     }
-    const std::size_t unit = code_ == Code::bytes ? 1 : 2;
+    constexpr std::size_t kUnit = 2;
     const std::size_t low = code_ == Code::utf16_big ? 1 : 0;
-    // The ASCII character at i: a UTF-16 unit if it is one, else a code that ends no line; any byte counts as one.
-    const auto character = [&](std::size_t i) {
-        return unit == 1 || bytes[i + 1 - low] == '\0' ? bytes[i + low] : '\x7F';
-    };
+    // The ASCII character of the unit at i; for any other one a code that ends no line.
+    const auto character = [&](std::size_t i) { return bytes[i + 1 - low] == '\0' ? bytes[i + low] : '\x7F'; };
     std::size_t start = 0;
-    for (std::size_t i = 0; i < bytes.size(); i += unit) {
+    for (std::size_t i = 0; i < bytes.size(); i += kUnit) {
         const char c = character(i);
         if (c != '\n' && (c != '\r' || ends_ == Ends::newline)) {
             after_return_ = false;
@@ -63,9 +63,26 @@ bool Lines::feed_known(std::string_view bytes, const Take& take) {
             keep(bytes.substr(start, i - start));
             if (!end_line(take)) return false;
         }
-        start = i + unit;
+        start = i + kUnit;
     }
     keep(bytes.substr(start));
+    return true;
+}
+
+bool Lines::feed_bytes(std::string_view bytes, const Take& take) {
+    while (!bytes.empty()) {
+        if (std::exchange(after_return_, false) && bytes.front() == '\n') {
+            bytes.remove_prefix(1);
+            continue;
+        }
+        std::size_t end = std::min(bytes.find('\n'), bytes.size());
+        if (ends_ == Ends::any) end = std::min(bytes.substr(0, end).find('\r'), end);
+        keep(bytes.substr(0, end));
+        if (end == bytes.size()) return true;
+        after_return_ = bytes[end] == '\r';
+        if (!end_line(take)) return false;
+        bytes.remove_prefix(end + 1);
+    }
     return true;
 }
 

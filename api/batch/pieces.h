@@ -13,10 +13,10 @@ namespace tunewright::api {
 
 /// One request of a batch, cut out of the body.
 struct RawEntry {
-    long line = 0;                 ///< the line of the body, from 1, where it begins
+    long line = 0;                 ///< the line of the body, from 1, where it begins; 0: it is in many lines
     std::string text;              ///< a tuning request, unless `fault` is set
     std::optional<Problem> fault;  ///< why it is not a request, if that is known before it is parsed
-    std::string name;              ///< name of a request with a fault, if it is known
+    std::string name;              ///< name of a request with a fault or in many lines, if it is known
 };
 
 /// The fault of a request that has `bytes` bytes where `max` are accepted.
@@ -51,6 +51,7 @@ private:
     enum class Code { unknown, bytes, utf16_little, utf16_big };
 
     bool feed_known(std::string_view bytes, const Take& take);
+    bool feed_bytes(std::string_view bytes, const Take& take);
     void keep(std::string_view bytes);
     bool end_line(const Take& take);
 

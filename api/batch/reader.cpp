@@ -1,10 +1,13 @@
 #include "api/batch/reader.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "api/batch/jobs_array.h"
 #include "api/batch/pieces.h"
 #include "api/contract/terms.h"
+#include "api/historian/loop_request.h"
+#include "api/historian/loops_reader.h"
 #include "api/json/json.h"
 
 namespace tunewright::api {
@@ -32,11 +35,13 @@ public:
     virtual ~Cutter() = default;
     virtual std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>& entries) = 0;
     virtual std::optional<Problem> finish(std::vector<RawEntry>& entries) = 0;
+    /// True if finish() has to be called again for the next entries.
+    virtual bool more() const { return false; }
     /// The name given in the body.
     virtual std::string name() const { return {}; }
     /// The text of `notify` in the body.
     virtual std::string notify() const { return {}; }
-    /// False if each request states its own method and options.
+    /// False if each request states its own method, options and units.
     virtual bool takes_options() const { return false; }
 };
 
@@ -120,6 +125,88 @@ private:
     bool checked_ = false;
 };
 
+/// Cuts records of many loops into a request for each. All of them come at the end, in portions of about a megabyte.
+class BatchReader::RecordedLoopsCutter : public Cutter {
+public:
+    explicit RecordedLoopsCutter(const BatchQuestion& question)
+        : options_(options_of(question)),
+          longest_entry_(question.longest_entry),
+          reader_(options_),
+          lines_(Lines::Ends::any, kMaxRecordLine) {}
+
+    std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>&) override {
+        std::optional<Problem> problem;
+        lines_.feed(bytes, taker(problem));
+        return problem;
+    }
+
+    std::optional<Problem> finish(std::vector<RawEntry>& entries) override {
+        std::optional<Problem> problem;
+        if (!std::exchange(ended_, true)) {
+            lines_.finish(taker(problem));
+            if (!problem) problem = reader_.finish();
+            if (problem) return problem;
+        }
+        TaggedLoop loop;
+        for (std::size_t bytes = 0; bytes < kPortion && (more_ = reader_.next(loop));
+             bytes += entries.back().text.size())
+            entries.push_back(entry_of(loop));
+        return std::nullopt;
+    }
+
+    bool more() const override { return more_; }
+    bool takes_options() const override { return true; }
+
+private:
+    static constexpr std::size_t kMaxRecordLine = std::size_t{1} << 20, kPortion = std::size_t{1} << 20;
+
+    static LoopsOptions options_of(const BatchQuestion& question) {
+        LoopsOptions options;
+        options.time_unit_given = question.time_unit.has_value();
+        if (question.time_unit) options.time_unit = *question.time_unit;
+        if (!question.name.empty()) options.name = question.name;
+        return options;
+    }
+
+    RawEntry entry_of(const TaggedLoop& loop) const {
+        RawEntry entry{0, {}, {}, loop.tag};
+        if (loop.fault) {
+            entry.fault = Problem{422, "invalid-request", "The loop cannot be read", *loop.fault, {}, {}};
+            return entry;
+        }
+        entry.text = loop_request(loop, options_.time_unit, options_.time_unit_given);
+        if (entry.text.size() > longest_entry_) {
+            entry.fault = too_long(entry.text.size(), longest_entry_);
+            entry.fault->detail += " Send a shorter time, or export fewer rows.";
+            entry.text.clear();
+        }
+        return entry;
+    }
+
+    Lines::Take taker(std::optional<Problem>& problem) {
+        return [&](long number, std::string_view text, std::size_t bytes) {
+            if (bytes > kMaxRecordLine)
+                problem =
+                    unreadable_loops("Line " + std::to_string(number) + " has more than 1 MiB. Send the file in " +
+                                     "parts, with fewer loops in each.");
+            else
+                problem = reader_.line(static_cast<int>(number), text);
+            return !problem;
+        };
+    }
+
+    LoopsOptions options_;
+    std::size_t longest_entry_;
+    LoopsReader reader_;
+    Lines lines_;
+    bool ended_ = false, more_ = false;
+};
+
+std::unique_ptr<BatchReader::Cutter> BatchReader::csv_cutter(const BatchQuestion& question) {
+    if (question.kind == BatchKind::check) return std::make_unique<RecordedLoopsCutter>(question);
+    return std::make_unique<LoopsCutter>(question.options);
+}
+
 /// Finds the form of a body: one that begins with { is {"jobs": ...} or the first of many lines.
 class BatchReader::Finder : public Cutter {
 public:
@@ -145,6 +232,7 @@ public:
         return chosen_->finish(entries);
     }
 
+    bool more() const override { return chosen_ && chosen_->more(); }
     std::string name() const override { return chosen_ ? chosen_->name() : std::string(); }
     std::string notify() const override { return chosen_ ? chosen_->notify() : std::string(); }
     bool takes_options() const override { return !chosen_ || chosen_->takes_options(); }
@@ -162,8 +250,7 @@ private:
             while (first_at_ < head_.size() && is_white(head_[first_at_])) ++first_at_;
             if (first_at_ < head_.size()) first_ = head_[first_at_];
         }
-        if (first_ && *first_ != '{' && *first_ != '[')
-            return choose(std::make_unique<LoopsCutter>(question_.options), entries);
+        if (first_ && *first_ != '{' && *first_ != '[') return choose(csv_cutter(question_), entries);
         auto problem = json_->feed(fresh, entries);
         if (json_->found_jobs() || first_ == '[') {
             chosen_ = std::move(json_);
@@ -195,7 +282,7 @@ BatchReader::BatchReader(BatchQuestion question) : question_(std::move(question)
     else if (*question_.form == BatchForm::ndjson)
         cutter_ = std::make_unique<NdjsonCutter>(question_.longest_entry);
     else
-        cutter_ = std::make_unique<LoopsCutter>(question_.options);
+        cutter_ = csv_cutter(question_);
 }
 
 BatchReader::~BatchReader() = default;
@@ -210,9 +297,11 @@ std::optional<Problem> BatchReader::finish(std::vector<BatchEntry>& entries) {
     std::vector<RawEntry> raw;
     auto found = cutter_->finish(raw);
     if (auto problem = judge(std::move(found), std::move(raw), entries)) return problem;
-    if (count_ == 0) return not_valid("", "The batch has no requests; it needs at least one.");
+    if (count_ == 0 && !more()) return not_valid("", "The batch has no requests; it needs at least one.");
     return std::nullopt;
 }
+
+bool BatchReader::more() const { return cutter_->more(); }
 
 // Reports the first fault, however the bytes were cut.
 std::optional<Problem> BatchReader::judge(std::optional<Problem> found, std::vector<RawEntry> raw,
@@ -224,7 +313,10 @@ std::optional<Problem> BatchReader::judge(std::optional<Problem> found, std::vec
 }
 
 std::optional<Problem> BatchReader::refuse_options() const {
-    if (question_.options.empty() || cutter_->takes_options()) return std::nullopt;
+    if (cutter_->takes_options()) return std::nullopt;
+    if (question_.time_unit)
+        return not_valid("/units.time", "units.time is a parameter for CSV; requests in JSON have their own units.");
+    if (question_.options.empty()) return std::nullopt;
     const std::string& name = question_.options.front().first;
     return not_valid("/" + pointer_segment(name),
                      name + " is a parameter for a CSV of loops; requests in JSON have their own members.");
@@ -264,8 +356,8 @@ std::optional<Problem> BatchReader::take(std::vector<RawEntry> raw, std::vector<
         }
         if (made.name.empty() && !entry.fault) made.name = name_in(entry.text);
         auto& problem = std::get<Problem>(made.job);
-        problem.detail =
-            "Request " + std::to_string(count_) + ", line " + std::to_string(entry.line) + ": " + problem.detail;
+        const std::string place = entry.line > 0 ? "line " + std::to_string(entry.line) : made.name;
+        problem.detail = "Request " + std::to_string(count_) + ", " + place + ": " + problem.detail;
     }
     return std::nullopt;
 }

@@ -1,4 +1,5 @@
-// Reads the requests of a batch from its body while it arrives: JSON {"jobs": [...]}, NDJSON, or a CSV of loops.
+// Reads the requests of a batch from its body while it arrives: JSON {"jobs": [...]}, NDJSON, a CSV of loops, or a file
+// of many recorded loops.
 #pragma once
 
 #include <functional>
@@ -16,6 +17,12 @@ namespace tunewright::api {
 
 enum class BatchForm { json, ndjson, csv };
 
+/// The meaning of a body in CSV.
+enum class BatchKind {
+    tune,   ///< a line is a loop's model: loops.h
+    check,  ///< records of loops in operation, to be checked: api/historian
+};
+
 /// Parameters of a call that posts a batch.
 struct BatchQuestion {
     std::optional<BatchForm> form;  ///< empty: the first bytes show it
@@ -23,7 +30,9 @@ struct BatchQuestion {
     std::optional<Notify> notify;   ///< webhook that is notified of its end
     /// Returns a problem if the `notify` of the body is not allowed. Empty function: every one is allowed.
     std::function<std::optional<Problem>(const Notify& notify)> judge_notify = {};
-    LoopOptions options;  ///< for a CSV of loops; the other forms have none
+    BatchKind kind = BatchKind::tune;
+    std::optional<std::string> time_unit = {};  ///< of a check's answers, and of times in CSV whose unit is not stated
+    LoopOptions options;                        ///< for a CSV of models; the other forms have none
     JobLimits limits;
     std::size_t longest_entry = std::size_t{8} << 20;
     std::size_t max_entries = 100'000;
@@ -45,8 +54,10 @@ public:
     /// text that is not JSON; 422 for another shape, too many entries, a name that is too long, or options that no loop
     /// can have.
     std::optional<Problem> feed(std::string_view bytes, std::vector<BatchEntry>& entries);
-    /// 422 if the batch has no entry.
+    /// Appends the entries that are left; those of many recorded loops come in portions, and finish() has to be called
+    /// again while there are more(). 422 if the batch has no entry.
     std::optional<Problem> finish(std::vector<BatchEntry>& entries);
+    bool more() const;
 
     /// Name of the batch, from the call or from the part of the body read so far.
     const std::string& name() const { return name_; }
@@ -60,8 +71,10 @@ private:
     class JsonCutter;
     class NdjsonCutter;
     class LoopsCutter;
+    class RecordedLoopsCutter;
     class Finder;
 
+    static std::unique_ptr<Cutter> csv_cutter(const BatchQuestion& question);
     std::optional<Problem> judge(std::optional<Problem> found, std::vector<RawEntry> raw,
                                  std::vector<BatchEntry>& entries);
     std::optional<Problem> refuse_options() const;

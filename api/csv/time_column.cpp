@@ -19,6 +19,9 @@ bool is_short(const TimeStamp& stamp, std::string_view cell) {
 /// datenum.
 bool is_day(double value) { return (value > 20000 && value < 80000) || (value > 700000 && value < 800000); }
 
+constexpr double kSpreadsheetDayOf1970 = 25569, kMatlabDayOf1970 = 719529;
+constexpr double kFrom1970 = 3e8, kTo1970 = 5e9;  ///< seconds since 1970: 1979 to 2128
+
 /// True if steps, in days, are as long as those of logs: seconds that divide a minute, or minutes.
 bool steps_of_a_log(double days) {
     constexpr double kMaxSecondsOff = 0.02;  // seconds
@@ -41,7 +44,10 @@ bool steps_of_a_clock(double days) {
 
 TimeColumn::TimeColumn(std::string_view text, const CsvLayout& layout, const DetectedColumns& columns,
                        const ColumnProfile& profile, const CsvOptions& options, std::vector<CsvFault>& faults)
-    : stamps_(profile.stamps > profile.numbers), sign_(layout.sign), suffix_(profile.suffix) {
+    : stamps_(profile.stamps > profile.numbers),
+      sign_(layout.sign),
+      suffix_(profile.suffix),
+      answer_s_(seconds_per(options.time_unit).value_or(0)) {
     if (!stamps_) {
         find_unit(text, layout, columns, profile, options);
         return;
@@ -125,10 +131,9 @@ std::optional<std::string> TimeColumn::unit_by_size(std::string_view text, const
         last = value;
     }
     if (!first || steps < 1) return std::nullopt;
-    constexpr double kFrom = 3e8, kTo = 5e9;  // seconds since 1970: 1979 to 2128
-    constexpr double kFromMidnight = 20;      // steps
+    constexpr double kFromMidnight = 20;  // steps
     for (const auto& [unit, scale] : {std::pair{"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}}) {
-        if (*first > kFrom * scale && *first < kTo * scale) return unit;
+        if (*first > kFrom1970 * scale && *first < kTo1970 * scale) return unit;
     }
     const std::string name = column < layout.headings.size() ? split_heading(layout.headings[column]).name : "";
     const bool dated = name.find("date") != name.npos || name.find("stamp") != name.npos ||
@@ -196,6 +201,7 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
         if (const auto found = unit_by_size(text, layout, column)) {
             unit = *found;
             by_size = from_zero_ = true;
+            counts_days_ = unit == "d";
         }
     }
     bool by_clock = false;
@@ -230,14 +236,14 @@ void TimeColumn::note_unknown_unit(const ColumnProfile& profile, const CsvOption
                      tunewright::text(profile.min_step) + " or more apart. Choose their unit if it is another.");
 }
 
-std::optional<TimeStamp> TimeColumn::stamp(std::string_view cell, std::string_view clock, DateOrder order) const {
-    auto now = read_time_stamp(cell, order);
+std::optional<TimeStamp> TimeColumn::stamp(std::string_view cell, std::string_view clock) const {
+    auto now = read_time_stamp(cell, order_);
     if (now && short_is_minutes_ && is_short(*now, cell)) {
         now->seconds /= kMinute;
         now->minutes = true;
     }
     if (!now || clock.empty()) return now;
-    const auto of_day = read_time_stamp(clock, order);
+    const auto of_day = read_time_stamp(clock, order_);
     if (!of_day || of_day->has_date) return std::nullopt;
     now->seconds += of_day->seconds;
     now->has_clock = true;
@@ -251,17 +257,34 @@ std::vector<std::string> TimeColumn::take_notes() {
 }
 
 bool TimeColumn::read(std::string_view cell, std::string_view clock, int line, double& time) {
-    double value = 0;
     if (stamps_) {
-        const auto now = stamp(cell, clock, order_);
-        if (!now) return false;
-        value = clock_.seconds(*now, line);
-    } else if (!read_cell_number(cell, value, sign_, suffix_)) {
-        return false;
+        const auto now = stamp(cell, clock);
+        if (now) time = time_of(*now, line);
+        return now.has_value();
     }
+    double value = 0;
+    if (!read_cell_number(cell, value, sign_, suffix_)) return false;
     if (!first_) first_ = value;
-    time = (stamps_ || from_zero_ ? value - *first_ : value) * factor_;
+    time = (from_zero_ ? value - *first_ : value) * factor_;
     return true;
+}
+
+double TimeColumn::time_of(const TimeStamp& stamp, int line) {
+    const double value = clock_.seconds(stamp, line);
+    if (!first_) first_ = value, dated_ = stamp.has_date, zoned_ = stamp.has_zone;
+    return (value - *first_) * factor_;
+}
+
+std::optional<double> TimeColumn::epoch() const {
+    if (!first_ || (stamps_ && !dated_)) return std::nullopt;
+    if (stamps_) return *first_;
+    const double seconds = *first_ * factor_ * answer_s_, days = seconds / kDay;
+    if (counts_days_) {
+        if (!is_day(days)) return std::nullopt;
+        return seconds - kDay * (days < kMatlabDayOf1970 / 2 ? kSpreadsheetDayOf1970 : kMatlabDayOf1970);
+    }
+    if (seconds < kFrom1970 || seconds > kTo1970) return std::nullopt;
+    return from_zero_ ? seconds : 0;
 }
 
 }  // namespace tunewright::api

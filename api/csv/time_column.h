@@ -23,10 +23,23 @@ public:
     /// False if the cell is not a time. `clock` is the cell of the second column, if there is one.
     bool read(std::string_view cell, std::string_view clock, int line, double& time);
 
+    /// The two halves of read() for a column of stamps: a caller with many equal cells need not parse each.
+    std::optional<TimeStamp> stamp(std::string_view cell, std::string_view clock) const;
+    double time_of(const TimeStamp& stamp, int line);
+
     bool stamps() const { return stamps_; }
     /// True if the file or the request states the unit of the times.
     bool unit_known() const { return stamps_ || unit_known_; }
     std::vector<std::string> take_notes();
+
+    // After the first time has been read:
+
+    /// The file's own time at which read() gives 0, in the unit of the answer.
+    double zero() const { return first_ && (stamps_ || from_zero_) ? *first_ * factor_ : 0; }
+    /// Seconds since 1970 at which read() gives 0; empty if the times have no date.
+    std::optional<double> epoch() const;
+    /// True if these seconds are in UTC: the stamps have a zone, or the times count since 1970.
+    bool in_utc() const { return !stamps_ || zoned_; }
 
 private:
     void note_unknown_unit(const ColumnProfile& profile, const CsvOptions& options);
@@ -36,15 +49,16 @@ private:
                    const ColumnProfile& profile, const CsvOptions& options);
     std::optional<std::string> unit_by_size(std::string_view text, const CsvLayout& layout, std::size_t column) const;
     std::optional<std::string> unit_by_clock(std::string_view text, const CsvLayout& layout, std::size_t column) const;
-    std::optional<TimeStamp> stamp(std::string_view cell, std::string_view clock, DateOrder order) const;
-
     bool stamps_ = false;
     DateOrder order_ = DateOrder::day_first;
     DecimalSign sign_;
     std::string suffix_;
     double factor_ = 1;
     bool from_zero_ = false, unit_known_ = false;
-    bool short_is_minutes_ = false;  // "75:20" is minutes and seconds
+    bool counts_days_ = false;            // as spreadsheets do
+    bool short_is_minutes_ = false;       // "75:20" is minutes and seconds
+    bool dated_ = false, zoned_ = false;  // the first stamp
+    double answer_s_ = 0;                 // seconds of the unit of the answer; 0: it is not a known unit
     RunningClock clock_;
     std::optional<double> first_;
     std::vector<std::string> notes_;

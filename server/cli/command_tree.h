@@ -51,9 +51,14 @@ CLI::Option* option(CLI::App& app, const std::string& name, T& value, const std:
     return app.add_option("--" + name, value, help)->envname(variable_of(name));
 }
 
+struct OutputWords;
+/// Adds --json and --pretty, and --table if the command has a table.
+void add_output_options(CLI::App& app, OutputWords& words, bool has_table);
+
 /// Each adds the commands of one source file.
 void add_serve_command(CommandTree& tree);
 void add_loop_commands(CommandTree& tree);
+void add_check_command(CommandTree& tree);
 void add_list_commands(CommandTree& tree);
 void add_operator_commands(CommandTree& tree);
 /// Adds `completion` and `manual`, which describe the tree at the time of the call.

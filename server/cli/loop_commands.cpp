@@ -7,8 +7,6 @@
 #include "server/cli/commands.h"
 
 namespace tunewright::server {
-namespace {
-
 void add_output_options(CLI::App& app, OutputWords& words, bool has_table) {
     CLI::Option* json = app.add_flag("--json", words.json, "Compact JSON, even on a terminal");
     CLI::Option* pretty = app.add_flag("--pretty", words.pretty, "JSON with a line for each member");
@@ -17,6 +15,8 @@ void add_output_options(CLI::App& app, OutputWords& words, bool has_table) {
     CLI::Option* table = app.add_flag("--table", words.table, "The short table, also for a file or a pipe");
     table->excludes(json)->excludes(pretty);
 }
+
+namespace {
 
 void add_record_options(CLI::App& app, api::CsvRequest& question) {
     app.add_option("--t", question.t, "CSV: heading or number of the time column")->type_name("COLUMN");

@@ -1,5 +1,7 @@
+#include <array>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "api/json/json.h"
 #include "api/json/utf8.h"
@@ -57,9 +59,10 @@ std::optional<Response> read_form(const http::Request& request, std::optional<ap
     } else if (type == "text/csv" || type == "application/csv" || type == "text/tab-separated-values") {
         form = api::BatchForm::csv;
     } else {
-        return problem_response(415,
-                                "The body must be application/json ({\"jobs\": [...]}), application/x-ndjson (one "
-                                "request per line) or text/csv (one loop per line).");
+        return problem_response(
+            415,
+            "The body must be application/json ({\"jobs\": [...]}), application/x-ndjson (one "
+            "request per line) or text/csv (one loop per line, or recorded loops with kind=check).");
     }
     return std::nullopt;
 }
@@ -81,6 +84,29 @@ std::optional<Response> judge_notify(NotifyPolicy& policy, const http::Request& 
     return std::nullopt;
 }
 
+/// Reads the parameters about recorded loops. Everything else would be an option of a method, and a check has none.
+std::optional<Response> read_kind(const http::Request& request, api::BatchQuestion& question) {
+    const auto kind = request.query.find("kind");
+    if (kind == request.query.end()) return std::nullopt;
+    api::Problem problem = bad_parameters("batch");
+    if (kind->second == "check")
+        question.kind = api::BatchKind::check;
+    else if (kind->second != "tune")
+        refuse_parameter(problem, "kind", kind->second, "it must be tune or check.");
+    for (const auto& [name, value] : std::exchange(question.options, {})) {
+        if (question.kind == api::BatchKind::tune)
+            question.options.emplace_back(name, value);
+        else if (name == "units.time")
+            question.time_unit = value;
+        else
+            refuse_parameter(problem, name, value,
+                             "the only parameters of a check are kind, name, units.time, notify_url "
+                             "and notify_secret_id.");
+    }
+    if (!problem.errors.empty()) return http::problem_response(problem);
+    return std::nullopt;
+}
+
 /// Reads head and parameters of the call.
 std::optional<Response> read_order(const http::Request& request, NotifyPolicy& policy, const BatchLimits& limits,
                                    BatchOrder& order) {
@@ -94,9 +120,10 @@ std::optional<Response> read_order(const http::Request& request, NotifyPolicy& p
         order.asked.append(name).append("=").append(value).append("\n");
         if (name == "name")
             order.question.name = value;
-        else if (name != "notify_url" && name != "notify_secret_id")
+        else if (name != "notify_url" && name != "notify_secret_id" && name != "kind")
             order.question.options.emplace_back(name, value);
     }
+    if (auto refusal = read_kind(request, order.question)) return refusal;
     if (auto refusal = judge_notify(policy, request, order)) return refusal;
     if (order.question.name.size() > kMaxNameLength)
         return problem_response(
@@ -132,12 +159,18 @@ Response receipt_response(Batches& batches, const http::Request& request, const 
     return store_failed(receipt.fault);
 }
 
-Response post_batch(Batches& batches, LongRequestSlots& places, NotifyPolicy& policy, const BatchLimits& limits,
-                    const Call& call) {
+/// `recorded`: the place for a body of recorded loops, whose columns are in memory until all have arrived.
+Response post_batch(Batches& batches, LongRequestSlots& places, LongRequestSlots& recorded, NotifyPolicy& policy,
+                    const BatchLimits& limits, const Call& call) {
     BatchOrder order;
     if (auto refusal = read_order(call.request, policy, limits, order)) return *std::move(refusal);
     const auto place = places.take(call.request.client);
     if (!place) return problem_response(503, "Too many batches are being received. Try again in a moment.");
+    std::optional<LongRequestSlots::Slot> alone;
+    const bool columns = order.question.kind == api::BatchKind::check &&
+                         order.question.form.value_or(api::BatchForm::csv) == api::BatchForm::csv;
+    if (columns && !(alone = recorded.take(call.request.client)))
+        return problem_response(503, "Another file of recorded loops is being received. Try again in a moment.");
     return receipt_response(batches, call.request, batches.receive(std::move(order), call.request.read_body));
 }
 
@@ -259,8 +292,9 @@ Response delete_batch(Batches& batches, const Call& call) {
 
 void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, LongRequestSlots& places,
                       ComputeSlots& listers, Executor& lane, NotifyPolicy& policy, const BatchLimits& limits) {
-    router.streamed("POST", "/v1/batches", [&batches, &places, &policy, limits](const Call& call) {
-        return post_batch(batches, places, policy, limits, call);
+    const auto recorded = std::make_shared<LongRequestSlots>(std::array<std::size_t, 2>{1, 1});
+    router.streamed("POST", "/v1/batches", [&batches, &places, &policy, limits, recorded](const Call& call) {
+        return post_batch(batches, places, *recorded, policy, limits, call);
     });
     router.add("GET", "/v1/batches", [&](const Call& call) { return list_batches(batches, listers, call); });
     router.add("GET", "/v1/batches/{id}", [&](const Call& call) { return get_batch(batches, call); });

@@ -85,9 +85,14 @@ NamedMode named_mode(const Heading& heading) {
     NamedMode named{.what = NamedMode::none, .before = heading.words};
     std::vector<std::string>& words = named.before;
     if (std::ranges::any_of(words, [](const auto& word) { return is_one_of(word, kOther); })) return named;
-    // The codes of "Mode 0=MAN 1=AUTO" name nothing, but "Auto=1" does.
+    // The codes of "Mode 0=MAN 1=AUTO" name nothing, but "Auto=1" does, and so does the 101 of "TIC-101.MODE".
     for (std::string& word : words) word.resize(std::min(word.find('='), word.size()));
-    std::erase_if(words, [](const auto& word) { return word.empty() || is_digit(word.front()); });
+    const auto names_mode = [](const auto& word) {
+        return is_one_of(word, kModeWords) || is_one_of(word, kModeStates);
+    };
+    const auto codes = std::remove_if(std::ranges::find_if(words, names_mode), words.end(),
+                                      [](const auto& word) { return word.empty() || is_digit(word.front()); });
+    words.erase(codes, words.end());
     const auto take_last = [&](const auto& known) {
         const bool has = !words.empty() && is_one_of(words.back(), known);
         if (has) words.pop_back();

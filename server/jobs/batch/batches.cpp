@@ -41,6 +41,7 @@ private:
 
     bool take(std::string_view piece);
     void read(std::string_view bytes);
+    void take_end();
     void read_end();
     bool find_earlier();
     void keep(std::vector<api::BatchEntry> entries);
@@ -94,7 +95,7 @@ Reception::~Reception() {
 BatchReceipt Reception::run(const BatchBody& body) {
     const bool whole = body([this](std::string_view piece) { return take(piece); });
     if (!whole && !failed()) fail(BatchReceipt::Kind::abandoned);
-    if (whole && !lane_.run([this] { read_end(); })) fail(BatchReceipt::Kind::draining);
+    if (whole) take_end();
     if (wait_until(0)) {
         BatchReceipt receipt = seal();
         if (receipt.kind == BatchReceipt::Kind::created || receipt.kind == BatchReceipt::Kind::existing ||
@@ -112,6 +113,14 @@ bool Reception::take(std::string_view piece) {
     if (jobs_.draining() || !lane_.run([&] { read(piece); })) return fail(BatchReceipt::Kind::draining), false;
     if (opened_ && Clock::now() - last_sent_ > kReceiptInterval) sign_of_life();
     return wait_until(kMaxGroupBytes);
+}
+
+/// Takes the entries that are known only at the end. They come in portions: all of them together, those of a day of
+/// many loops, would be 100 MB on their way to the store.
+void Reception::take_end() {
+    do {
+        if (!lane_.run([this] { read_end(); })) return fail(BatchReceipt::Kind::draining);
+    } while (reader_.more() && wait_until(kMaxGroupBytes));
 }
 
 /// A known key: the body is only compared with that of the earlier batch.
@@ -142,7 +151,7 @@ void Reception::read_end() {
     auto problem = reader_.finish(entries);
     if (problem) return fail({BatchReceipt::Kind::refused, {}, *std::move(problem), {}});
     keep(std::move(entries));
-    send();
+    if (!reader_.more()) send();
 }
 
 void Reception::keep(std::vector<api::BatchEntry> entries) {

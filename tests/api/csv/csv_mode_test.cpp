@@ -77,6 +77,13 @@ TEST(CsvMode, IsNotReadFromWhatIsNoModeOfThisLoop) {
     EXPECT_THAT(read(with_modes("hvac_mode", {"heat", "heat", "cool", "off", "auto", "heat"})).automatic, IsEmpty());
 }
 
+TEST(CsvMode, ANumberInTheTagBelongsToTheTag) {
+    const CsvRecord record = read(
+        "Time;TIC-101.PV;TIC-101.OP;TIC-101.MODE;TIC-102.MODE\n0;20;40;MAN;AUTO\n1;21;41;AUTO;AUTO\n2;22;40;AUTO;"
+        "MAN\n");
+    EXPECT_THAT(record.automatic, ElementsAre(false, true, true));
+}
+
 TEST(CsvMode, NumbersWithoutAMeaningAreNotReadAndNamed) {
     const std::string text = with_modes("Mode", {"1", "1", "0", "0", "1", "1"});
     const CsvRecord record = read(text);

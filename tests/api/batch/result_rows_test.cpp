@@ -8,7 +8,7 @@
 #include "api/csv/traces.h"
 #include "api/json/digest.h"
 #include "api/openapi/openapi.h"
-#include "support.h"
+#include "tests/api/support.h"
 
 namespace tunewright::api {
 namespace {

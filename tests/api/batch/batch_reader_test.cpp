@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "api/batch/reader.h"
-#include "support.h"
+#include "tests/api/support.h"
 
 namespace tunewright::api {
 namespace {

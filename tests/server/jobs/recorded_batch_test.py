@@ -1,0 +1,67 @@
+"""Records of many loops over HTTP: each loop becomes a job."""
+
+import unittest
+
+from batch_bodies import rows_of, wait_for_end
+from check_command_test import plant
+from service import Service
+
+TEXT = {"Content-Type": "text/csv"}
+
+
+class RecordedBatchTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.service = Service("--workers", "2")
+
+    @classmethod
+    def tearDownClass(cls):
+        code = cls.service.stop()
+        assert code == 0, "exit code %d: %s" % (code, cls.service.read_log()[-3000:])
+        cls.service.folder.cleanup()
+
+    def post(self, body, query="", headers=TEXT, status=202):
+        answer = self.service.post("/v1/batches?kind=check" + query, body, headers)
+        self.assertEqual(answer.status, status, answer.body)
+        return answer.json
+
+    def rows(self, batch):
+        return rows_of(self.service.get("/v1/batches/%s/results?follow=true" % batch["id"]))
+
+    def test_each_loop_is_a_job(self):
+        tags = ["FIC%d" % i for i in range(30)]
+        batch = self.post(plant(tags, rows=2000), "&name=unit+7&units.time=min")
+        self.assertEqual((batch["name"], batch["total"]), ("unit 7", len(tags)))
+        rows = self.rows(batch)
+        self.assertEqual([row["name"] for row in rows], tags)
+        for row in rows:
+            self.assertEqual(row["status"], "succeeded")
+            self.assertEqual(row["result"]["loops"][0]["tag"], row["name"])
+            self.assertAlmostEqual(row["result"]["loops"][0]["quality"]["sample_time"], 1 / 6, places=9)
+        self.assertEqual(wait_for_end(self.service, batch["id"])["counts"]["succeeded"], len(tags))
+
+    def test_a_loop_that_cannot_be_read_fails_alone(self):
+        good, bad = plant(["FIC1"]).splitlines(), plant(["FIC2"], quiet=True).splitlines()
+        table = [good[0] + "," + bad[0].split(",", 1)[1]]
+        table += [a + "," + b.split(",", 1)[1] for a, b in zip(good[1:], bad[1:])]
+        rows = self.rows(self.post("\n".join(table)))
+        self.assertEqual([(row["name"], row["status"]) for row in rows], [("FIC1", "succeeded"), ("FIC2", "failed")])
+        self.assertIn("FIC2", rows[1]["error"]["detail"])
+
+    def test_parameters(self):
+        body = plant(["FIC1"])
+        for query, pointer in (("&Ms=1.6", "/Ms"), ("&method=simc", "/method")):
+            problem = self.post(body, query, status=422)
+            self.assertEqual(problem["errors"][0]["pointer"], pointer)
+        answer = self.service.post("/v1/batches?kind=chek", body, TEXT)
+        self.assertEqual((answer.status, answer.json["errors"][0]["pointer"]), (422, "/kind"))
+        self.post("name,K,T,L\na,1,2,3\n", status=422)
+        same = self.service.post("/v1/batches?kind=tune&Ms=1.6", "name,K,T,L\na,1,2,3\n", TEXT)
+        self.assertEqual(same.status, 202)
+
+    def test_requests_need_no_parameter(self):
+        loop = '{"loops": [{"tag": "A", "csv": "%s"}]}' % plant(["A"]).replace("\n", "\\n")
+        headers = {"Content-Type": "application/x-ndjson"}
+        for query in ("?kind=check", ""):
+            answer = self.service.post("/v1/batches" + query, loop + "\n" + loop, headers)
+            self.assertEqual((answer.status, answer.json["total"]), (202, 2))

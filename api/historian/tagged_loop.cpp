@@ -33,8 +33,8 @@ std::vector<std::size_t> time_order(const std::vector<double>& t) {
     std::vector<std::size_t> rows(t.size());
     std::iota(rows.begin(), rows.end(), std::size_t{0});
     if (!std::ranges::is_sorted(t)) std::ranges::stable_sort(rows, {}, [&](std::size_t i) { return t[i]; });
-    const auto rest = std::ranges::unique(rows, {}, [&](std::size_t i) { return t[i]; });
-    rows.erase(rest.begin(), rest.end());
+    const auto same_time = [&](std::size_t a, std::size_t b) { return t[a] == t[b]; };
+    rows.erase(std::unique(rows.begin(), rows.end(), same_time), rows.end());
     return rows;
 }
 

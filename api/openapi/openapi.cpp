@@ -91,6 +91,7 @@ std::string openapi_json() {
         check_request_contract().schema(book);
         check_result_contract().schema(book);
         check_answer_contract().schema(book);
+        batch_check_contract().schema(book);
         range_request_contract().schema(book);
         range_result_contract().schema(book);
         range_answer_contract().schema(book);

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/check/hysteresis.h"
-#include "engine/check/loop_law.h"
-#include "engine/check/loop_speed.h"
-#include "engine/check/set_point_response.h"
+#include "engine/check/pace/loop_law.h"
+#include "engine/check/pace/loop_speed.h"
+#include "engine/check/pace/set_point_response.h"
 #include "engine/check/thresholds.h"
-#include "engine/check/valve_fit.h"
+#include "engine/check/valve/hysteresis.h"
+#include "engine/check/valve/valve_fit.h"
 #include "engine/identification/record/series.h"
 #include "engine/number_text.h"
 #include "engine/numerics/statistics.h"
@@ -197,10 +197,9 @@ private:
 
     /// The loop's own oscillation, whose phase drifts.
     bool hardly_damped() const {
-        const bool resonant = (peak_.regularity >= kResonant && peak_.persistence >= kPersistent &&
-                               peak_.cycles >= kCyclesOfResonance) ||
-                              (peak_.regularity >= kLongResonant && peak_.persistence >= kLongPersistent &&
-                               peak_.cycles >= kLongCycles);
+        const bool resonant =
+            (peak_.regularity >= kResonant && peak_.persistence >= kPersistent && peak_.cycles >= kCyclesOfResonance) ||
+            (peak_.regularity >= kLongResonant && peak_.persistence >= kLongPersistent && peak_.cycles >= kLongCycles);
         return resonant && drifts_;
     }
 

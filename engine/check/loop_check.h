@@ -122,6 +122,7 @@ struct PerformanceFigures {
     Figure idle_index;       ///< -1 to 1: above 0.4 sluggish, below -0.4 quick (Hägglund 1999)
     double variability = 0;  ///< standard deviation of the error, y
     double mean_error = 0;   ///< mean magnitude of the error, y
+    double independent = 0;  ///< values of the error that count as independent
     Figure following;        ///< variance of the error after set-point moves relative to that of the moves
     double travel = 0;       ///< of the output, share of its range per hour
     double reversals = 0;    ///< of the output, per hour

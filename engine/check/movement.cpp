@@ -99,6 +99,7 @@ PerformanceFigures performance_of(const Samples& samples, const std::array<doubl
     double sum = 0;
     for (const double e : error) sum += std::abs(e);
     out.mean_error = sum / static_cast<double>(error.size());
+    out.independent = effective_samples(error);
     add_output(out, samples, samples.duration() * question.seconds / kHour, u_range);
     out.harris = harris_range(samples, question);
     out.idle_index = idle_index(samples);

@@ -2,7 +2,9 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <variant>
 
+#include "api/batch/plant_checks.h"
 #include "api/json/json.h"
 #include "api/json/utf8.h"
 #include "server/http/app/negotiation.h"
@@ -259,6 +261,66 @@ Response get_results(Batches& batches, JobService& jobs, LongRequestSlots& place
     return response;
 }
 
+constexpr std::int64_t kMaxCheckedLoops = 5000;  // read into memory for their common judgement
+constexpr std::size_t kRowsAtOnce = 100;
+
+/// Adds the entries that have ended.
+void add_checks(Batches& batches, const std::string& id, api::PlantChecks& checks) {
+    for (std::int64_t next = 0;;) {
+        const std::vector<BatchRow> rows = batches.rows(id, next, kRowsAtOnce);
+        if (rows.empty()) return;
+        for (const BatchRow& row : rows) {
+            if (has_ended(row.status)) checks.add(row.index, row.id, row.result);
+            next = row.index + 1;
+        }
+    }
+}
+
+/// The batch that `before` names, or a refusal.
+std::variant<std::optional<std::string>, Response> earlier_batch(const http::Request& request) {
+    api::Problem problem = bad_parameters("check");
+    std::optional<std::string> before;
+    for (const auto& [name, value] : request.query) {
+        if (name == "before")
+            before = value;
+        else
+            refuse_parameter(problem, name, value, "the only parameter is before, an earlier batch of the same loops.");
+    }
+    if (!problem.errors.empty()) return problem_response(problem);
+    return before;
+}
+
+Response check_of_batch(Batches& batches, const Call& call, const std::optional<std::string>& before) {
+    const std::string& id = call.path.at("id");
+    std::optional<api::PlantChecks> earlier;
+    for (const std::string& name : {before.value_or(id), id}) {
+        const std::optional<BatchSummary> batch = batches.find(name);
+        if (!batch || !may_see(call.request, *batch)) return no_such_batch(name);
+        if (static_cast<std::int64_t>(batch->total) > kMaxCheckedLoops)
+            return problem_response(
+                422, "The batch has " + std::to_string(batch->total) + " entries; loops are judged together up to " +
+                         std::to_string(kMaxCheckedLoops) + ". Check a part of the plant at a time.");
+        if (!before || name != *before) break;
+        add_checks(batches, name, earlier.emplace());
+    }
+    api::PlantChecks checks;
+    const std::optional<BatchSummary> batch = batches.find(id);
+    if (!batch) return no_such_batch(id);
+    add_checks(batches, id, checks);
+    if (checks.loops() == 0 && batch->ended())
+        return problem_response(409,
+                                "The batch has no checked loop. It must be one of kind=check, or of check requests.");
+    return http::json_response(checks.answer(batch->ended(), earlier ? &*earlier : nullptr), 200);
+}
+
+Response get_check(Batches& batches, ComputeSlots& readers, const Call& call) {
+    auto before = earlier_batch(call.request);
+    if (auto* refusal = std::get_if<Response>(&before)) return std::move(*refusal);
+    return in_turn(readers, call.request, [&] {
+        return guarded([&] { return check_of_batch(batches, call, std::get<std::optional<std::string>>(before)); });
+    });
+}
+
 Response cancel_batch(Batches& batches, const Call& call) {
     if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
     if (auto refusal = refuse_stranger(batches, call)) return *std::move(refusal);
@@ -301,6 +363,7 @@ void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, 
     router.add("DELETE", "/v1/batches/{id}", [&](const Call& call) { return delete_batch(batches, call); });
     router.add("GET", "/v1/batches/{id}/results",
                [&](const Call& call) { return get_results(batches, jobs, places, lane, call); });
+    router.add("GET", "/v1/batches/{id}/check", [&](const Call& call) { return get_check(batches, listers, call); });
     router.add("POST", "/v1/batches/{id}/cancel", [&](const Call& call) { return cancel_batch(batches, call); });
 }
 

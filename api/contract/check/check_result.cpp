@@ -108,4 +108,86 @@ const Description<CheckResult>& check_answer_contract() {
     return description;
 }
 
+namespace {
+
+const Description<Change>& change_contract() {
+    static const auto description = [] {
+        Description<Change> d("LoopChange", "What has changed since an earlier check.");
+        d.field("before", &Change::before, only_answered(check_verdict()), "The earlier cause.")
+            .field("now", &Change::now, only_answered(check_verdict()), "The cause now.")
+            .field("variability_ratio", &Change::variability_ratio, figure(),
+                   "Standard deviation of the error, now over before.")
+            .field("likelihood", &Change::likelihood, figure(),
+                   "Of so large a change by chance, 0 to 1 (F test with the independent values of each record).")
+            .field("significant", &Change::significant, only_answered(boolean()), "True: chance does not explain it.")
+            .why_null("The two records cannot be compared.");
+        return d;
+    }();
+    return description;
+}
+
+void write_texts(const std::vector<std::string>& texts, Writer& out) {
+    out.begin_array();
+    for (const std::string& text : texts) out.raw(text);
+    out.end_array();
+}
+
+void write_changes(const BatchCheck& check, Writer& out) {
+    out.begin_array();
+    for (std::size_t i = 0; i < check.changes.size(); ++i) {
+        out.begin_object();
+        out.key("loop").integer(static_cast<long long>(check.compared[i]));
+        out.key("change");
+        change_contract().write(check.changes[i], out);
+        out.end_object();
+    }
+    out.end_array();
+}
+
+Json changes_schema(SchemaBook& book) {
+    return {{"type", "array"},
+            {"items",
+             {{"type", "object"},
+              {"properties", {{"loop", {{"type", "integer"}}}, {"change", change_contract().schema(book)}}},
+              {"required", {"loop", "change"}}}}};
+}
+
+}  // namespace
+
+const Description<BatchCheck>& batch_check_contract() {
+    static const auto description = [] {
+        using B = BatchCheck;
+        Description<B> d("BatchCheck", "What the loops of a batch of checks say together, as far as they are checked.");
+        d.field(
+             "loops", {}, [](const B& check, Writer& out) { write_texts(check.loops, out); },
+             list_of(answer(loop_check_contract())).schema,
+             "The loops, with index and job of each, without the parts that only its own result has (excerpt, "
+             "spectrum, "
+             "autocorrelation, shape). The cause of a loop that its neighbour disturbs is external here.")
+            .field(
+                "clusters", {},
+                [](const B& check, Writer& out) {
+                    list_of(answer(cluster_contract())).write(check.plant.clusters, out);
+                },
+                list_of(answer(cluster_contract())).schema, "Loops that oscillate together, the largest group first.")
+            .field(
+                "cascades", {},
+                [](const B& check, Writer& out) {
+                    list_of(answer(cascade_contract())).write(check.plant.cascades, out);
+                },
+                list_of(answer(cascade_contract())).schema, "Pairs of which one gives the other its set point.")
+            .field(
+                "ranking", {},
+                [](const B& check, Writer& out) { list_of(answer(rank_contract())).write(check.plant.ranking, out); },
+                list_of(answer(rank_contract())).schema, "The work list, first the loop to mend first.")
+            .field("changes", {}, write_changes, changes_schema,
+                   "With before: what has changed in each loop since that batch, by tag.", {},
+                   [](const B& check) { return check.compared.empty(); })
+            .field("failed", &B::failed, only_answered(integer(0, 1 << 30)), "Entries without an answer.")
+            .field("complete", &B::complete, only_answered(boolean()), "True: the batch has ended.");
+        return d;
+    }();
+    return description;
+}
+
 }  // namespace tunewright::api

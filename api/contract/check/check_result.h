@@ -3,9 +3,11 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "api/contract/record.h"
 #include "api/describe/description.h"
+#include "engine/check/together/plant_check.h"
 #include "engine/request/check/ask_check.h"
 
 namespace tunewright::api {
@@ -18,6 +20,19 @@ struct CheckAnswer {
 
 /// The result of a job.
 const Description<CheckAnswer>& check_result_contract();
+
+/// What the loops of a batch say together.
+struct BatchCheck {
+    std::vector<std::string> loops;  ///< each as JSON, in the order of the batch
+    check::PlantCheck plant;
+    std::vector<check::Change> changes;  ///< of `compared`
+    std::vector<std::size_t> compared;   ///< places in loops
+    bool complete = false;
+    int failed = 0;
+};
+
+/// The answer of GET /v1/batches/{id}/check.
+const Description<BatchCheck>& batch_check_contract();
 
 /// The answer of POST /v1/check.
 const Description<CheckResult>& check_answer_contract();

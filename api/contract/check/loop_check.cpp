@@ -165,6 +165,7 @@ const Description<PerformanceFigures>& loop_performance_contract() {
                    "-1 to 1: above 0.4 sluggish, below -0.4 quick (Hägglund 1999).")
             .field("variability", &P::variability, answered(), "Standard deviation of the error.", {.unit = "y"})
             .field("mean_error", &P::mean_error, answered(), "Mean magnitude of the error.", {.unit = "y"})
+            .field("independent", &P::independent, answered(), "Values of the error that count as independent.")
             .field("following", &P::following, figure(),
                    "Variance of the error over that of the set point, where the set point moves.")
             .field("travel", &P::travel, answered(), "Of the output, ranges an hour.")
@@ -356,6 +357,57 @@ const Description<CheckedLoop>& loop_check_contract() {
         return d;
     }();
     return description;
+}
+
+namespace {
+
+double number_in(const Json& object, const char* name) {
+    const auto at = object.find(name);
+    return at != object.end() && at->is_number() ? at->get<double>() : 0;
+}
+
+void read_cause(const Json& from, Cause& cause, Reader& reader) {
+    if (from.contains("verdict")) check_verdict().read(from["verdict"], cause.verdict, reader);
+    for (const Json& other : from.value("alternatives", Json::array())) {
+        Verdict verdict = Verdict::undetermined;
+        check_verdict().read(other, verdict, reader);
+        cause.alternatives.push_back(verdict);
+    }
+    for (const Json& item : from.value("evidence", Json::array())) {
+        Evidence evidence{item.value("code", ""), number_in(item, "value"), {}, item.value("detail", "")};
+        if (item.contains("limit")) evidence.limit = number_in(item, "limit");
+        cause.evidence.push_back(std::move(evidence));
+    }
+}
+
+}  // namespace
+
+check::LoopCheck read_loop_check(const Json& loop) {
+    LoopCheck check;
+    Reader reader;
+    check.tag = loop.value("tag", "");
+    if (loop.contains("weight")) check.weight = number_in(loop, "weight");
+    const Json performance = loop.value("performance", Json::object());
+    check.performance.mean_error = number_in(performance, "mean_error");
+    check.performance.variability = number_in(performance, "variability");
+    check.performance.independent = number_in(performance, "independent");
+    for (const Json& period : loop.value("/oscillation/periods"_json_pointer, Json::array())) {
+        check.oscillation.found = true;
+        check.oscillation.periods.push_back(
+            {.period = number_in(period, "period"), .share = number_in(period, "share")});
+    }
+    read_cause(loop.value("cause", Json::object()), check.cause, reader);
+    if (const auto code = "/action/code"_json_pointer; loop.contains(code))
+        check_action().read(loop.at(code), check.action.code, reader);
+    if (loop.contains("shape")) shape_contract().read(loop["shape"], check.shape, reader);
+    return check;
+}
+
+void write_cause_and_action(const check::LoopCheck& check, Writer& out) {
+    out.key("cause");
+    cause_contract().write(check.cause, out);
+    out.key("action");
+    action_contract().write(check.action, out);
 }
 
 }  // namespace tunewright::api

@@ -1,4 +1,4 @@
-// The answer about one checked loop. It is written, and read back for the judgement of a batch.
+// The answer about one checked loop. It is written, and partly read back for the judgement of a batch.
 #pragma once
 
 #include "api/describe/description.h"
@@ -7,6 +7,12 @@
 namespace tunewright::api {
 
 const Description<CheckedLoop>& loop_check_contract();
+
+/// What the judgement of a batch needs of a loop's answer; the rest keeps its defaults.
+check::LoopCheck read_loop_check(const Json& loop);
+
+/// The members cause and action, of an open object.
+void write_cause_and_action(const check::LoopCheck& check, Writer& out);
 
 Codec<check::Verdict> check_verdict();
 Codec<check::ActionCode> check_action();

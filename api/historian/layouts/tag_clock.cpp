@@ -3,6 +3,11 @@
 #include <cmath>
 
 namespace tunewright::api {
+namespace {
+
+constexpr double kMaxTime = 1e30;  // as every number of the contract
+
+}  // namespace
 
 bool TagClock::read_time(std::string_view cell, std::string_view clock, int line, LastStamp& last, double& t) {
     if (!times_.stamps()) return times_.read(cell, clock, line, t);
@@ -13,7 +18,7 @@ bool TagClock::read_time(std::string_view cell, std::string_view clock, int line
 }
 
 bool TagClock::read(std::string_view cell, std::string_view clock, int line, FileTimes& file, double& t) {
-    if (!read_time(cell, clock, line, file.last, t)) return false;
+    if (!read_time(cell, clock, line, file.last, t) || !(std::abs(t) <= kMaxTime)) return false;
     FileStart& start = file.start;
     if (!start.zero) start = {times_.zero(), times_.epoch(), times_.in_utc()};
     t += times_.zero() - *start.zero;

@@ -29,8 +29,8 @@ std::string operation_file() {
         if (automatic) u = integral + 0.3 * (r - y);
         const std::string pv = k % 97 == 0 ? "Bad" : std::to_string(y + noise(chance));
         out += "2026-05-04T06:00:00." + std::string(3, '0') + "," + pv + "," + std::to_string(r) + "," +
-               (k % 83 == 0 ? "" : std::to_string(u)) + "," + (automatic ? "AUTO" : "MAN") + ",Bad," + std::to_string(k) +
-               "\n";
+               (k % 83 == 0 ? "" : std::to_string(u)) + "," + (automatic ? "AUTO" : "MAN") + ",Bad," +
+               std::to_string(k) + "\n";
         const int seconds = 5 * k;
         char stamp[24];
         std::snprintf(stamp, sizeof stamp, "%02d:%02d:%02d.250", 6 + seconds / 3600, seconds / 60 % 60, seconds % 60);
@@ -79,7 +79,8 @@ TEST(JoinedRequests, AreOneRequestWithAllLoops) {
     const Json joined = Json::parse(std::get<std::string>(both));
     EXPECT_THAT(joined.at("loops"), SizeIs(3));
     EXPECT_EQ(joined.at("cluster"), false);
-    for (const char* bad : {"", "{", "{\"loops\": []}\nx", "{\"loops\": []}\n{\"plant\": 1}", "{\"loops\": 1}\n{\"loops\": []}"})
+    for (const char* bad :
+         {"", "{", "{\"loops\": []}\nx", "{\"loops\": []}\n{\"plant\": 1}", "{\"loops\": 1}\n{\"loops\": []}"})
         EXPECT_EQ(std::get<Problem>(joined_requests(bad)).status, 400) << bad;
 }
 

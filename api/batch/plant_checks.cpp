@@ -1,0 +1,67 @@
+#include "api/batch/plant_checks.h"
+
+#include <algorithm>
+
+#include "api/contract/check/check_result.h"
+#include "api/contract/check/loop_check.h"
+#include "api/json/json.h"
+#include "api/json/writer.h"
+#include "engine/check/together/plant_check.h"
+
+namespace tunewright::api {
+namespace {
+
+/// The parts of a loop's answer that are drawn of a single loop, and those that are written anew.
+constexpr const char* kLeftOut[] = {"excerpt", "spectrum", "autocorrelation", "shape", "cause", "action"};
+
+void compare(const std::deque<check::LoopCheck>& now, const std::deque<check::LoopCheck>& before, BatchCheck& out) {
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        const auto same = std::ranges::find(before, now[i].tag, &check::LoopCheck::tag);
+        if (same == before.end()) continue;
+        out.compared.push_back(i);
+        out.changes.push_back(check::change_of(*same, now[i]));
+    }
+}
+
+}  // namespace
+
+void PlantChecks::add(std::int64_t index, std::string_view id, std::string_view result) {
+    const Json parsed = Json::parse(result, nullptr, false);
+    if (!parsed.is_object() || !parsed.contains("loops")) {
+        ++failed_;
+        return;
+    }
+    for (const Json& loop : parsed["loops"]) {
+        checks_.push_back(read_loop_check(loop));
+        Json kept = loop;
+        for (const char* name : kLeftOut) kept.erase(name);
+        kept["index"] = index;
+        kept["job"] = std::string(id);
+        std::string text = kept.dump();
+        text.pop_back();
+        texts_.push_back(std::move(text));
+    }
+}
+
+std::string PlantChecks::answer(bool complete, const PlantChecks* before) const {
+    BatchCheck out;
+    std::deque<check::LoopCheck> judged = checks_;
+    std::vector<check::LoopCheck*> all;
+    for (check::LoopCheck& one : judged) all.push_back(&one);
+    out.plant = check::check_plant(all);
+    for (std::size_t i = 0; i < judged.size(); ++i) {
+        Writer members;
+        members.begin_object();
+        write_cause_and_action(judged[i], members);
+        members.end_object();
+        out.loops.push_back(texts_[i] + "," + members.take().substr(1));
+    }
+    if (before != nullptr) compare(judged, before->checks_, out);
+    out.complete = complete;
+    out.failed = failed_;
+    Writer text;
+    batch_check_contract().write(out, text);
+    return text.take();
+}
+
+}  // namespace tunewright::api

@@ -6,8 +6,7 @@
 #include "api/contract/check/loop_check.h"
 #include "api/json/json.h"
 #include "api/json/writer.h"
-#include "engine/check/change.h"
-#include "engine/check/plant_check.h"
+#include "engine/check/together/plant_check.h"
 
 namespace tunewright::api {
 namespace {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/check/hysteresis.h"
-#include "engine/check/loop_law.h"
-#include "engine/check/loop_speed.h"
-#include "engine/check/set_point_response.h"
+#include "engine/check/pace/loop_law.h"
+#include "engine/check/pace/loop_speed.h"
+#include "engine/check/pace/set_point_response.h"
 #include "engine/check/thresholds.h"
-#include "engine/check/valve_fit.h"
+#include "engine/check/valve/hysteresis.h"
+#include "engine/check/valve/valve_fit.h"
 #include "engine/identification/record/series.h"
 #include "engine/number_text.h"
 #include "engine/numerics/statistics.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/check/loop_law.h"
+#include "engine/check/pace/loop_law.h"
 #include "engine/check/thresholds.h"
 #include "engine/identification/record/series.h"
 

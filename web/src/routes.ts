@@ -33,14 +33,19 @@ export type Route =
   /** The API: the call with that id, or the one with which to begin. */
   | { screen: "docs"; call: string };
 
+/** A check is a job, or a batch with a job for each loop. */
+export interface CheckedBy {
+  kind: "job" | "batch";
+  id: string;
+}
+
 /**
- * Loops in operation. `of`: the job that checked them; null: the form, filled with the loops of the job `from` if there
- * is one. `loop`: the place of the loop whose page is shown; null: the work list. `list`: what is shown of that, by the
+ * Loops in operation. `of`: what checked them; null: the form, filled with the loops of the job `from` if there is one. `loop`: the place of the loop whose page is shown; null: the work list. `list`: what is shown of that, by the
  * names of `LIST_PARTS`.
  */
 export interface CheckRoute {
   screen: "check";
-  of: string | null;
+  of: CheckedBy | null;
   from: string | null;
   loop: number | null;
   list: ListView;
@@ -73,9 +78,12 @@ export const addressOfJob = (job: string, screen: JobScreen): string =>
   formatRoute(screen === "design" ? { screen, job, entry: null } : { screen, job, sort: "", rows: null });
 
 /** The result of a check. */
-export const addressOfCheck = (job: string): string => formatRoute({ screen: "check", of: job, from: null, loop: null, list: WHOLE_LIST });
+export const addressOfCheck = (id: string, kind: CheckedBy["kind"] = "job"): string =>
+  formatRoute({ screen: "check", of: { kind, id }, from: null, loop: null, list: WHOLE_LIST });
 
-function checkRoute(of: string | null, values: Record<string, string>): CheckRoute {
+export const sameCheck = (a: CheckedBy | null, b: CheckedBy | null): boolean => a?.kind === b?.kind && a?.id === b?.id;
+
+function checkRoute(of: CheckedBy | null, values: Record<string, string>): CheckRoute {
   const { loop = "", from } = values;
   const list = Object.fromEntries(LIST_PARTS.map((part) => [part, values[part] ?? ""])) as unknown as ListView;
   return { screen: "check", of, from: from || null, loop: /^\d+$/.test(loop) ? Number(loop) : null, list };
@@ -84,7 +92,8 @@ function checkRoute(of: string | null, values: Record<string, string>): CheckRou
 function formatCheck({ of, from, loop, list }: CheckRoute): string {
   const values = { ...(loop === null ? {} : { loop: String(loop) }), ...list, ...(from === null ? {} : { from }) };
   const query = new URLSearchParams(Object.entries(values).filter(([, text]) => text !== "")).toString();
-  return `#/${of === null ? "check" : `jobs/${encodeURIComponent(of)}/check`}${query ? `?${query}` : ""}`;
+  const folder = of?.kind === "batch" ? "batches" : "jobs";
+  return `#/${of === null ? "check" : `${folder}/${encodeURIComponent(of.id)}/check`}${query ? `?${query}` : ""}`;
 }
 
 /** The route of a location hash; an unknown one leads to Start. */
@@ -99,6 +108,7 @@ export function parseRoute(hash: string): Route {
   if (parts[0] === "check") return checkRoute(null, values);
   if (parts[0] === "relay") return { screen: "relay", plant: parts[1] ?? "", values };
   if (parts[0] === "jobs" && !parts[1]) return { screen: "jobs", text: values["q"] ?? "" };
+  if (parts[0] === "batches" && parts[1] && parts[2] === "check") return checkRoute({ kind: "batch", id: parts[1] }, values);
   if (parts[0] === "batches" && parts[1]) return { screen: "batch", id: parts[1], sort: values["sort"] ?? "" };
   if (parts[0] === "docs") return { screen: "docs", call: parts[1] ?? "" };
   if (parts[0] === "methods") return { screen: "methods", id: parts[1] ?? "" };
@@ -113,7 +123,7 @@ export function parseRoute(hash: string): Route {
         ...(Number(values["Ms"]) > 1 ? { rankMs: Number(values["Ms"]) } : {}),
       };
     }
-    if (parts[2] === "check") return checkRoute(parts[1], values);
+    if (parts[2] === "check") return checkRoute({ kind: "job", id: parts[1] }, values);
     if (parts[2] === "identify") return { screen: "identify", job: parts[1] };
     if (parts[2] === "range") return { screen: "range", example: "", job: parts[1] };
     if (parts[2] === "edit") return { screen: "edit", job: parts[1] };
@@ -210,7 +220,7 @@ export function formatRoute(route: Route): string {
 function stillAt(from: Route): boolean {
   const now = parseRoute(location.hash);
   const same = showsStart(from) ? showsStart(now) : now.screen === from.screen;
-  if (from.screen === "check" && now.screen === "check") return from.of === now.of;
+  if (from.screen === "check" && now.screen === "check") return sameCheck(from.of, now.of);
   return same && (!showsJob(from) || !showsJob(now) || from.job === now.job);
 }
 

@@ -7,7 +7,7 @@
 
 #include "api/contract/record.h"
 #include "api/describe/description.h"
-#include "engine/check/change.h"
+#include "engine/check/together/plant_check.h"
 #include "engine/request/check/ask_check.h"
 
 namespace tunewright::api {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/check/loop_check.h"
-#include "engine/check/plant_check.h"
+#include "engine/check/together/plant_check.h"
 #include "engine/progress.h"
 #include "engine/request/check/cure.h"
 

@@ -19,7 +19,7 @@ struct KnownLoop {
 
 /// A closed loop: a load that drifts as a lag does, a first-order plant with dead time, a PI controller. The minimum
 /// variance over the first `delay` terms of the impulse response from the noise to the error.
-KnownLoop drawn(std::uint64_t seed) {
+KnownLoop known_loop(std::uint64_t seed) {
     test::Random random(seed);
     const int delay = random.whole(1, 12);
     const double a = std::exp(-1 / random.log_uniform(2, 30)), phi = std::exp(-1 / random.log_uniform(3, 200));
@@ -58,7 +58,7 @@ TEST(Harris, TheRangeHoldsTheExactRatioOnNineteenOfTwentyLoops) {
     int held = 0, loops = 0;
     double width = 0;
     for (std::uint64_t seed = 1; loops < 200; ++seed) {
-        const KnownLoop loop = drawn(seed);
+        const KnownLoop loop = known_loop(seed);
         if (!(loop.exact > 0.02) || !std::isfinite(loop.exact)) continue;  // an unstable or a drifting loop
         ++loops;
         const std::vector<int> delays = {loop.delay};

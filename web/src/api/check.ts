@@ -1,7 +1,7 @@
 // Loops in operation: a check as a job, started, followed and stopped.
 import { call, sentenceOf, waitAfter } from "./client.ts";
 import { untilEnd } from "./events.ts";
-import type { CheckJob, CheckLoop, CheckRequest, CheckResult, LoopCure, Progress, Units } from "./types.ts";
+import type { Batch, CheckContent, CheckJob, CheckLoop, CheckRequest, CheckResult, LoopCure, Progress, Units } from "./types.ts";
 import { isFinal } from "./types.ts";
 
 /** The same criterion as the service's for requests of POST /v1/jobs. */
@@ -13,6 +13,16 @@ export const postCheck = async (body: Blob): Promise<CheckJob> => (await call("P
 
 export const getCheck = async (id: string, signal?: AbortSignal): Promise<CheckJob> =>
   (await call("GET", `v1/jobs/${encodeURIComponent(id)}`, undefined, {}, signal)).data as CheckJob;
+
+/** Loops whose records are too long for one request, or in one file, as a batch: `type` says which. */
+export async function postCheckBatch(body: Blob, type: "text/csv" | "application/x-ndjson", options: Record<string, string>): Promise<Batch> {
+  const query = new URLSearchParams({ kind: "check", ...options }).toString();
+  return (await call("POST", `v1/batches?${query}`, body, { "Content-Type": type })).data as Batch;
+}
+
+/** What the loops of a batch say together, without their curves. */
+export const checkOfBatch = async (id: string): Promise<CheckContent> =>
+  (await call("GET", `v1/batches/${encodeURIComponent(id)}/check`)).data as CheckContent;
 
 /** New settings for a loop whose cause is its tuning, or the test that is missing; null if tuning is not the cause. */
 export async function cureOf(loop: CheckLoop, units: Units | undefined, signal: AbortSignal): Promise<LoopCure | null> {

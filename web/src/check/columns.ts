@@ -1,5 +1,5 @@
 // The work list of a check as data: its rows in order, its columns with their figures, and which rows are shown.
-import type { CheckResult, LoopCheck, LoopRank } from "../api/types.ts";
+import type { CheckContent, ListedLoop, LoopRank } from "../api/types.ts";
 import type { ListView } from "../routes.ts";
 import type { ExplainedName } from "../words/explained.ts";
 import { orderOf } from "../words/comparison.ts";
@@ -8,15 +8,13 @@ import { DASH, formatNumber, formatShare, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { actionWords, confidenceWords, effortWords, estimate, ownerWords, verdictOrder, verdictWords } from "../words/check.ts";
 
-export type CheckContent = Pick<CheckResult, "loops" | "clusters" | "cascades" | "ranking" | "partial" | "units">;
-
 /** A loop with its place in the work list. */
 export interface WorkRow {
   /** Its place in the answer's loops. */
   place: number;
   /** From 1. */
   rank: number;
-  loop: LoopCheck;
+  loop: ListedLoop;
   standing: LoopRank;
 }
 

@@ -1,5 +1,4 @@
 // The form of a check: files that are dropped or chosen, the loops in them, how they are read.
-import { maxBodyBytes } from "../api/records.ts";
 import type { CheckRequest, FieldError } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { textField } from "../form/controls.ts";
@@ -9,13 +8,13 @@ import { chosen, dropped, textOf } from "./dropped.ts";
 import type { Dropped } from "./dropped.ts";
 import { loopRows } from "./loop_rows.ts";
 import { readingFields } from "./reading_fields.ts";
-import { loopOfFile, NO_LOOPS, readCheck, textsOf } from "./request.ts";
-import type { LoopTexts } from "./request.ts";
+import { loopOfFile, NO_LOOPS, readCheck, readFile, textsOf } from "./request.ts";
+import type { CheckOrder, LoopTexts } from "./request.ts";
 
 export interface CheckForm {
   element: HTMLElement;
-  /** The request, with the faults of its texts. */
-  read(): { request: CheckRequest; errors: FieldError[] };
+  /** What is to be checked, with the faults of its texts. */
+  read(): { order: CheckOrder; errors: FieldError[] };
   load(request: CheckRequest): void;
   setBusy(busy: boolean): void;
 }
@@ -25,27 +24,19 @@ export interface CheckFormEvents {
   onExample(): void;
 }
 
-const mebibytes = (bytes: number): string => `${(bytes / 1024 / 1024).toFixed(1)} MiB`;
-
-/** The reason why a check cannot be sent to a service that takes bodies of at most `maxBytes`; "" if it can. */
-export const tooLong = (bytes: number, maxBytes: number): string =>
-  bytes > maxBytes
-    ? `The records have ${mebibytes(bytes)} together; one check takes at most ${mebibytes(maxBytes)}. Remove some loops and check them afterwards, or shorten the records.`
-    : "";
-
-const charactersOf = (loops: readonly LoopTexts[]): number => loops.reduce((sum, { given }) => sum + (given.csv?.length ?? 0), 0);
-
 export function checkForm(errors: FormErrors, events: CheckFormEvents): CheckForm {
   let base: Partial<CheckRequest> = {};
   const status = h("p", { class: "hint", role: "status" });
-  const size = h("p", { class: "trouble", role: "status", hidden: true });
+  const many = h("p", { role: "status", hidden: true }, "This file has the columns of several loops. They are found by their tags, such as FIC101.PV, and checked as a batch.");
   const file = h("input", { type: "file", class: "visually-hidden", multiple: true, accept: ".csv,.tsv,.txt,text/csv,text/plain", tabindex: -1, "aria-label": "CSV files of loops" });
   const choose = h("button", { type: "button", onclick: () => file.click() }, "Choose files");
-  const drop = h("div", { class: "drop" }, h("p", {}, "Drop CSV files or a folder here, one loop a file, or"), choose, file);
-  const reading = readingFields(errors);
+  const drop = h("div", { class: "drop" }, h("p", {}, "Drop CSV files or a folder here, one loop a file or all loops in one file, or"), choose, file);
+  const reading = readingFields(errors, follow);
   const rows = loopRows(errors, follow);
+  rows.element.hidden = true;
   const name = textField({ label: "Name of this check", placeholder: "optional, such as Unit 21", pointer: () => "/name" }, errors);
   const cluster = h("input", { type: "checkbox", id: "check-cluster", checked: true });
+  const together = h("label", { class: "check", for: "check-cluster" }, cluster, "Look for loops that oscillate together");
   const submit = h("button", { type: "submit", class: "primary" }, "Check the loops");
   const empty = h("button", { type: "button", hidden: true, onclick: () => clear() }, "Remove all");
   const example = h("button", { type: "button", onclick: events.onExample }, "Try the example plant");
@@ -58,7 +49,7 @@ export function checkForm(errors: FormErrors, events: CheckFormEvents): CheckFor
     "div",
     { class: "check-terms", hidden: true },
     name.element,
-    h("label", { class: "check", for: "check-cluster" }, cluster, "Look for loops that oscillate together"),
+    together,
   );
   const element = h(
     "form",
@@ -71,7 +62,7 @@ export function checkForm(errors: FormErrors, events: CheckFormEvents): CheckFor
     ),
     drop,
     status,
-    size,
+    many,
     rows.element,
     terms,
     reading.element,
@@ -92,14 +83,15 @@ export function checkForm(errors: FormErrors, events: CheckFormEvents): CheckFor
   /** After a change of the loops: the first file is the example of how they are read. */
   function follow(): void {
     const loops = rows.texts();
-    more.hidden = terms.hidden = empty.hidden = loops.length === 0;
-    submit.textContent = loops.length === 0 ? "Check the loops" : `Check ${counted(loops.length, "loop")}`;
     reading.offer(loops.find(({ given }) => given.csv !== undefined)?.given.csv ?? null);
-    void maxBodyBytes().then((limit) => {
-      const words = tooLong(charactersOf(rows.texts()), limit);
-      size.textContent = words;
-      size.hidden = words === "";
-    });
+    const hasMany = reading.hasMany();
+    many.hidden = !hasMany;
+    // Of loops that the service finds nothing is known yet; the rows of other files stay, to be removed.
+    rows.element.hidden = loops.length === 0 || (hasMany && loops.length === 1);
+    together.hidden = hasMany;
+    terms.hidden = hasMany || loops.length === 0;
+    more.hidden = empty.hidden = loops.length === 0;
+    submit.textContent = loops.length === 0 ? "Check the loops" : hasMany ? "Check all loops of the file" : `Check ${counted(loops.length, "loop")}`;
   }
 
   async function take({ files, others }: Dropped): Promise<void> {
@@ -143,8 +135,12 @@ export function checkForm(errors: FormErrors, events: CheckFormEvents): CheckFor
 
   return {
     element,
-    read: () =>
-      readCheck({ name: name.input.value, cluster: cluster.checked, reading: reading.read(), loops: rows.texts(), base }),
+    read() {
+      const texts = { name: name.input.value, cluster: cluster.checked, reading: reading.read(), loops: rows.texts(), base };
+      if (reading.hasMany()) return readFile(texts);
+      const { request, errors: faults } = readCheck(texts);
+      return { order: { kind: "loops", request }, errors: faults };
+    },
     load(request) {
       const texts = textsOf(request);
       ({ base } = texts);

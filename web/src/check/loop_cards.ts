@@ -1,4 +1,5 @@
 // The cards of a checked loop: its cause with the evidence, what to do first, and its figures.
+import type { CheckContent } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import type { Child } from "../dom.ts";
 import { explained } from "../reach/explanation.ts";
@@ -8,15 +9,16 @@ import { figureUnit } from "../words/figure_units.ts";
 import { DASH, formatNumber, formatShare, withMinus, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { causeMark } from "./cause_mark.ts";
-import type { CheckContent, WorkRow } from "./columns.ts";
+import type { WorkRow } from "./columns.ts";
+import { loopLink } from "./loop_link.ts";
+import type { LoopAddress } from "./loop_link.ts";
 import { clusterOf } from "./periods.ts";
 
 export interface LoopShown {
   content: CheckContent;
   row: WorkRow;
   units: UnitNames;
-  /** Of a loop's page, by its place. */
-  address(place: number): string;
+  address: LoopAddress;
 }
 
 const card = (title: string, look: string, ...content: Child[]): HTMLElement => {
@@ -25,7 +27,7 @@ const card = (title: string, look: string, ...content: Child[]): HTMLElement => 
 };
 
 function linkTo({ content, address }: LoopShown, place: number): HTMLElement {
-  return h("a", { href: address(place) }, content.loops[place]!.tag);
+  return loopLink(place, content.loops[place]!.tag, address);
 }
 
 /** "A, B and C", as links. */

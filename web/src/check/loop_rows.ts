@@ -50,7 +50,7 @@ export function loopRows(errors: FormErrors, onChange: () => void): LoopRows {
     h("tbody", {}, all),
     body,
   );
-  const element = h("div", { class: "scroll loop-rows-scroll", role: "region", "aria-label": "Loops to check", tabindex: 0, hidden: true }, table);
+  const element = h("div", { class: "scroll loop-rows-scroll", role: "region", "aria-label": "Loops to check", tabindex: 0 }, table);
 
   function setAll(part: Partial<LoopTexts>): void {
     for (const row of rows) row.set(part);
@@ -67,7 +67,6 @@ export function loopRows(errors: FormErrors, onChange: () => void): LoopRows {
   }
 
   function changed(): void {
-    element.hidden = rows.length === 0;
     all.hidden = rows.length < 2;
     onChange();
   }

@@ -1,12 +1,13 @@
 // A checked loop on a page of its own: cause and evidence, what to do, its pictures and figures; and the way to the next
 // loop of the work list.
-import type { CheckLoop, LoopCheck, Units } from "../api/types.ts";
+import type { LoopCheck } from "../api/types.ts";
 import { loopFrames } from "../charts/loop_check.ts";
 import { h, passFocus } from "../dom.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { cureCard } from "./cure_card.ts";
 import { actionCard, causeCard, figuresCard } from "./loop_cards.ts";
 import type { LoopShown } from "./loop_cards.ts";
+import type { WholeLoop } from "./source.ts";
 
 /** Where a loop is in the work list. */
 export interface LoopWays {
@@ -16,16 +17,16 @@ export interface LoopWays {
   list: string;
 }
 
-/** The loop as it was sent, with what can be done with its record. */
-export interface SentLoop {
-  loop: CheckLoop | null;
-  units: Units | undefined;
+/** The loop with its curves, and what can be done with its record. */
+export interface LoopWhole extends WholeLoop {
   steps: HTMLElement[];
 }
 
 export interface LoopView {
   element: HTMLElement;
-  show(shown: LoopShown, ways: LoopWays, sent: SentLoop): void;
+  show(shown: LoopShown, ways: LoopWays): void;
+  /** What the list does not have follows when it is known. */
+  complete(shown: LoopShown, whole: LoopWhole): void;
   /** It is not on the screen any more. */
   leave(): void;
   dispose(): void;
@@ -67,17 +68,23 @@ export function loopView(announce: (sentence: string) => void): LoopView {
 
   return {
     element,
-    show(shown, { order, list }, sent) {
-      const { loop, place } = shown.row;
+    show(shown, { order, list }) {
+      const { place } = shown.row;
       const index = order.indexOf(place);
       back.href = list;
       lead(before, "‹ Previous", index < 0 ? undefined : order[index - 1], shown);
       lead(after, "Next ›", index < 0 ? undefined : order[index + 1], shown);
       at.textContent = index < 0 ? "not in the list as filtered" : `${index + 1} of ${order.length}`;
-      cards.replaceChildren(causeCard(shown), actionCard(shown, sent.steps));
+      cards.replaceChildren(causeCard(shown), actionCard(shown, []));
       side.replaceChildren(figuresCard(shown));
+      plots.element.hidden = true;
+      cure.dispose();
+      cure.element.hidden = true;
+    },
+    complete(shown, { loop, sent, units, steps }) {
+      cards.replaceChildren(causeCard(shown), actionCard(shown, steps));
       draw(loop, shown);
-      cure.show(loop, sent.loop, sent.units);
+      cure.show(loop, sent, units);
     },
     leave: cure.dispose,
     dispose() {

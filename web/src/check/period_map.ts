@@ -1,11 +1,13 @@
 // The plant's map of periods: each loop that oscillates with its spectrum over one axis of periods, loops that oscillate
 // together joined by a line, the likely source marked.
+import type { CheckContent } from "../api/types.ts";
 import { h, node, svgElement } from "../dom.ts";
 import type { Child, TreeNode } from "../dom.ts";
 import { explained } from "../reach/explanation.ts";
 import { timeWords } from "../words/check.ts";
 import { counted } from "../words/range.ts";
-import type { CheckContent } from "./columns.ts";
+import { loopLink } from "./loop_link.ts";
+import type { LoopAddress } from "./loop_link.ts";
 import { alongAxis, periodGroups, periodRange, periodTicks, ridge } from "./periods.ts";
 import type { PeriodGroup } from "./periods.ts";
 
@@ -59,7 +61,7 @@ const title = ({ cluster, places }: PeriodGroup): Child[] =>
     : [h("strong", {}, `${counted(places.length, "loop")} alone`)];
 
 /** A table, so that it is read without the drawing too; null if no loop oscillates. */
-export function periodMap(content: CheckContent, address: (place: number) => string): HTMLElement | null {
+export function periodMap(content: CheckContent, address: LoopAddress): HTMLElement | null {
   const range = periodRange(content.loops);
   if (!range) return null;
   const bodies = periodGroups(content).map((group, index) => {
@@ -72,7 +74,7 @@ export function periodMap(content: CheckContent, address: (place: number) => str
         h(
           "th",
           { scope: "row" },
-          h("a", { href: address(loop) }, content.loops[loop]!.tag),
+          loopLink(loop, content.loops[loop]!.tag, address),
           cluster?.source === loop ? h("span", { class: "source" }, "source") : "",
         ),
         h("td", {}, timeWords(content.loops[loop]!.shape.period)),

@@ -1,6 +1,5 @@
 // The plant's map of periods as data: loops that oscillate together, loops that oscillate alone, and the axis.
-import type { LoopCheck, LoopCluster } from "../api/types.ts";
-import type { CheckContent } from "./columns.ts";
+import type { CheckContent, ListedLoop, LoopCluster } from "../api/types.ts";
 
 export interface PeriodGroup {
   /** Its place among the answer's clusters; null: loops that oscillate alone. */
@@ -25,7 +24,7 @@ export function periodGroups({ loops, clusters }: CheckContent): PeriodGroup[] {
 const MARGIN = 1.8;
 
 /** From the shortest to the longest period, with a margin, in s; null if nothing oscillates. */
-export function periodRange(loops: readonly LoopCheck[]): [number, number] | null {
+export function periodRange(loops: readonly ListedLoop[]): [number, number] | null {
   const periods = loops.map(({ shape }) => shape.period).filter((period) => period > 0);
   return periods.length === 0 ? null : [Math.min(...periods) / MARGIN, Math.max(...periods) * MARGIN];
 }
@@ -51,7 +50,7 @@ export const alongAxis = (period: number, [from, to]: readonly [number, number])
 const BANDS = [1, 100_000] as const;
 
 /** A loop's spectrum along the axis: place from 0 to 1, and power relative to its largest. */
-export function ridge({ spectrum }: LoopCheck["shape"], range: readonly [number, number]): [at: number, power: number][] {
+export function ridge({ spectrum }: ListedLoop["shape"], range: readonly [number, number]): [at: number, power: number][] {
   const highest = Math.max(...spectrum, 0);
   if (highest <= 0) return [];
   return spectrum

@@ -1,11 +1,10 @@
 // A check while it runs: how many loops are done, and a button to stop it.
-import type { CheckJob, Progress } from "../api/types.ts";
 import { h } from "../dom.ts";
+import type { CheckState } from "./source.ts";
 
 export interface CheckProgress {
   element: HTMLElement;
-  show(job: CheckJob): void;
-  follow(progress: Progress | null): void;
+  show(state: Pick<CheckState, "waits" | "fraction" | "message">): void;
 }
 
 /** Time between two spoken updates. */
@@ -18,24 +17,15 @@ export function checkProgress(announce: (sentence: string) => void, onCancel: ()
   const message = h("p", {});
   const cancel = h("button", { type: "button", onclick: onCancel }, "Cancel");
 
-  function follow(progress: Progress | null): void {
-    const fraction = Math.min(1, Math.max(0, progress?.fraction ?? 0));
-    bar.value = fraction;
-    title.textContent = `Checking: ${Math.round(100 * fraction)} %`;
-    message.textContent = progress?.message ?? "";
-    if (Date.now() - spoken < SPEAK_EVERY_MS) return;
-    spoken = Date.now();
-    announce(title.textContent);
-  }
-
   return {
     element: h("section", { class: "card progress", "aria-labelledby": "check-progress" }, title, bar, message, h("div", { class: "actions" }, cancel)),
-    show({ status, progress }) {
-      if (status !== "queued") return follow(progress ?? null);
-      title.textContent = "Waiting for its turn";
-      bar.value = 0;
-      message.textContent = "";
+    show({ waits, fraction, message: words }) {
+      bar.value = Math.min(1, Math.max(0, fraction));
+      title.textContent = waits ? "Waiting for its turn" : `Checking: ${Math.round(100 * bar.value)} %`;
+      message.textContent = waits ? "" : words;
+      if (waits || Date.now() - spoken < SPEAK_EVERY_MS) return;
+      spoken = Date.now();
+      announce(title.textContent);
     },
-    follow,
   };
 }

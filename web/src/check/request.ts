@@ -102,6 +102,32 @@ function readLoop(texts: LoopTexts, index: number, reading: Reading, errors: Fie
   };
 }
 
+/** What is sent: loops, or a file whose loops the service finds. */
+export type CheckOrder = { kind: "loops"; request: CheckRequest } | { kind: "file"; csv: string; options: Record<string, string> };
+
+/** A file with the columns of several loops, which are found by their tags. */
+export function readFile(texts: CheckTexts): { order: CheckOrder; errors: FieldError[] } {
+  const [first, ...others] = texts.loops;
+  const { csv = "" } = first?.given ?? {};
+  const detail = `${first?.file ?? ""} has the columns of several loops. Remove the other files, and check it alone.`;
+  return {
+    order: {
+      kind: "file",
+      csv,
+      options: {
+        name: given(texts.name) ? texts.name.trim() : (first?.tag ?? ""),
+        ...(texts.reading.timeUnit === "" ? {} : { "units.time": texts.reading.timeUnit }),
+      },
+    },
+    errors: others.length > 0 ? [{ pointer: "/loops/0/tag", detail }] : [],
+  };
+}
+
+/** The loops of a request that is too long, each as a request of its own in a line. */
+export function linesOf({ loops, name: _name, ...terms }: CheckRequest): string[] {
+  return loops.map((loop) => `${JSON.stringify({ ...(loop.tag ? { name: loop.tag } : {}), ...terms, loops: [loop] })}\n`);
+}
+
 export function readCheck(texts: CheckTexts): { request: CheckRequest; errors: FieldError[] } {
   const errors: FieldError[] = [];
   const loops = texts.loops.map((loop, index) => readLoop(loop, index, texts.reading, errors));

@@ -1,6 +1,6 @@
 // The work list of a check as a table: a row for each loop with its last periods, its cause, the gain and what to do. Rows
 // are created when they come into view, a part at a time; sorting and filtering move them.
-import type { LoopCheck } from "../api/types.ts";
+import type { ListedLoop } from "../api/types.ts";
 import { h, svgElement } from "../dom.ts";
 import { extent } from "../plot/axis.ts";
 import { spark } from "../plot/spark.ts";
@@ -10,12 +10,14 @@ import { orderOf } from "../words/comparison.ts";
 import type { ExplainedName } from "../words/explained.ts";
 import { causeMark } from "./cause_mark.ts";
 import { mendedBefore } from "./columns.ts";
+import { loopLink } from "./loop_link.ts";
+import type { LoopAddress } from "./loop_link.ts";
 import type { WorkColumn, WorkRow } from "./columns.ts";
 
 export interface WorkTable {
   element: HTMLElement;
   /** Creates the rows of an answer. `address`: of a loop's page. */
-  build(rows: readonly WorkRow[], columns: readonly WorkColumn[], address: (place: number) => string): void;
+  build(rows: readonly WorkRow[], columns: readonly WorkColumn[], address: LoopAddress): void;
   /** Shows these rows, in this order. */
   arrange(shown: readonly WorkRow[], view: ListView): void;
   /** Moves the focus to a loop; false if its row is not shown. */
@@ -31,8 +33,10 @@ export function workTable(onSort: (column: string) => void): WorkTable {
   const elements = new Map<number, HTMLTableRowElement>();
   let all: readonly WorkRow[] = [];
   let columns: readonly WorkColumn[] = [];
-  let address: (place: number) => string = () => "";
+  let address: LoopAddress = () => "";
   let shown: readonly WorkRow[] = [];
+  /** The answer has the loops' curves. */
+  let drawn = true;
   let footnotes: string[] = [];
   const head = h("tr", {});
   const body = h("tbody", {});
@@ -95,7 +99,7 @@ export function workTable(onSort: (column: string) => void): WorkTable {
     const look = column.words ? "words" : null;
     if (column.id === "cause") return h("td", { class: look }, causeMark(row.loop.cause));
     const first = column.id === "action" ? mendedBefore(row, all) : null;
-    if (first) return h("td", { class: look }, text, h("span", { class: "hint after" }, "after ", h("a", { href: address(first.place) }, first.loop.tag)));
+    if (first) return h("td", { class: look }, text, h("span", { class: "hint after" }, "after ", loopLink(first.place, first.loop.tag, address)));
     return h("td", { class: look, title: reason || null }, text, reason ? h("sup", {}, footnotes.indexOf(reason) + 1) : null);
   }
 
@@ -104,8 +108,8 @@ export function workTable(onSort: (column: string) => void): WorkTable {
       "tr",
       {},
       h("td", { class: "pin rank" }, row.rank),
-      h("th", { scope: "row", class: "pin loop" }, h("a", { href: address(row.place) }, row.loop.tag)),
-      h("td", { class: "spark" }, waveSpark(row.loop)),
+      h("th", { scope: "row", class: "pin loop" }, loopLink(row.place, row.loop.tag, address)),
+      h("td", { class: "spark", hidden: !drawn }, waveSpark(row.loop)),
       columns.map((column) => cell(row, column)),
     );
   }
@@ -114,12 +118,13 @@ export function workTable(onSort: (column: string) => void): WorkTable {
     element: h("div", {}, scroller, cue, why),
     build(rows, given, addressOf) {
       [all, columns, address] = [rows, given, addressOf];
+      drawn = rows.some(({ loop }) => loop.excerpt);
       elements.clear();
       footnotes = [...new Set(rows.flatMap((row) => columns.map((column) => column.figure(row).why)))].filter(Boolean);
       head.replaceChildren(
         heading("rank", "#", "pin rank", null),
         heading("loop", "Loop", "pin loop", null),
-        h("th", { scope: "col", class: "spark" }, "Last periods"),
+        h("th", { scope: "col", class: "spark", hidden: !drawn }, "Last periods"),
         ...columns.map(({ id, label, words, about }) => heading(id, label, words ? "words" : "", about)),
       );
       why.hidden = footnotes.length === 0;
@@ -159,7 +164,8 @@ const mean = (values: readonly (number | null)[]): number | null => {
 
 /** The measurement over the last periods, where its wave is seen, with a line at the mean of the set point or else of
     itself. */
-function waveSpark({ excerpt: { t, y, r } }: LoopCheck): SVGElement | null {
+function waveSpark({ excerpt }: ListedLoop): SVGElement | null {
+  const { t, y, r } = excerpt ?? { t: [], y: [] };
   const level = mean(r ?? y);
   if (t.length < 2 || level === null) return null;
   return svgElement(

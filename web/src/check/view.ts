@@ -1,27 +1,27 @@
 // The screen Check: records of loops in operation in, the work list of the plant out, and a page for each loop.
-import { followCheck, isCheckRequest, getCheck, postCheck } from "../api/check.ts";
+import { getCheck, isCheckRequest } from "../api/check.ts";
 import { sentenceOf } from "../api/client.ts";
-import { cancelJob } from "../api/jobs.ts";
-import { maxBodyBytes } from "../api/records.ts";
-import type { CheckJob, CheckRequest, IdentifyRequest, LoopCheck } from "../api/types.ts";
-import { isFinal } from "../api/types.ts";
+import type { CheckContent, IdentifyRequest } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { fileNameOf } from "../plot/export.ts";
-import { addressOfCheck, formatRoute, WHOLE_LIST } from "../routes.ts";
-import type { CheckRoute } from "../routes.ts";
+import { addressOfCheck, formatRoute, sameCheck, WHOLE_LIST } from "../routes.ts";
+import type { CheckedBy, CheckRoute } from "../routes.ts";
 import { requestMenu } from "../views/request_menu.ts";
 import type { View } from "../views/start.ts";
 import { unitNames } from "../words/numbers.ts";
 import { counted } from "../words/range.ts";
 import { workRows } from "./columns.ts";
-import type { CheckContent } from "./columns.ts";
+import type { WorkRow } from "./columns.ts";
 import { earlierChecks } from "./earlier.ts";
-import { checkForm, tooLong } from "./form.ts";
+import { checkForm } from "./form.ts";
+import type { LoopShown } from "./loop_cards.ts";
 import { loopView } from "./loop_view.ts";
-import type { SentLoop } from "./loop_view.ts";
 import { checkProgress } from "./progress_bar.ts";
 import { recordOf } from "./request.ts";
+import { sendOrder } from "./sending.ts";
+import { checkSource } from "./source.ts";
+import type { CheckSource, CheckState, WholeLoop } from "./source.ts";
 import { workList } from "./work_list.ts";
 
 export interface CheckView extends View {
@@ -40,17 +40,12 @@ export interface CheckEvents {
 const TITLE = "Check loops in operation";
 const EMPTY: CheckRoute = { screen: "check", of: null, from: null, loop: null, list: WHOLE_LIST };
 
-/** The reason why a job that has ended has no work list. */
-function whyNone({ request, error }: CheckJob): string {
-  if (request && !isCheckRequest(request)) return "This job is not a check of loops.";
-  return error?.detail ?? "The check was stopped before a loop was done.";
-}
-
 export function checkView(announce: (sentence: string) => void, events: CheckEvents): CheckView {
   const errors = new FormErrors();
   let route = EMPTY;
-  let job: CheckJob | null = null;
-  let stop: (() => void) | null = null;
+  let source: CheckSource | null = null;
+  let state: CheckState | null = null;
+  let followed: CheckedBy | null = null;
   /** The job whose loops fill the form. */
   let filledFrom: string | null = null;
   const heading = h("h1", { tabindex: -1 }, TITLE);
@@ -58,11 +53,11 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
   const trouble = h("p", { class: "trouble", role: "alert", hidden: true });
   const again = h("a", { href: "#/check" }, "Change and check again");
   const fresh = h("a", { href: "#/check" }, "New check");
-  const save = h("button", { type: "button", class: "quiet", onclick: () => list.save(fileNameOf({ subject: job?.name ?? "", fileName: "work-list" })) }, "Work list as CSV");
+  const save = h("button", { type: "button", class: "quiet", onclick: () => list.save(fileNameOf({ subject: state?.name ?? "", fileName: "work-list" })) }, "Work list as CSV");
   const menu = requestMenu(announce);
   const tools = h("p", { class: "actions check-tools" }, again, fresh, save);
-  const form = checkForm(errors, { onCheck: () => void send(form.read()), onExample: () => void tryExample() });
-  const progress = checkProgress(announce, () => void cancel());
+  const form = checkForm(errors, { onCheck: () => void send(), onExample: () => void tryExample() });
+  const progress = checkProgress(announce, () => void source?.cancel().catch(complain));
   const list = workList(announce, (view) => {
     route = { ...route, list: view };
     events.onList(route);
@@ -79,22 +74,19 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
     parts,
   );
 
-  /** Another kind of job has another result. */
-  const content = (): CheckContent | null => (job?.result && "loops" in job.result ? job.result : null);
+  const content = (): CheckContent | null => state?.content ?? null;
   const addressOf = (place: number): string => formatRoute({ ...route, loop: place });
 
-  async function send({ request, errors: faults }: ReturnType<typeof form.read>): Promise<void> {
+  async function send(): Promise<void> {
+    const { order, errors: faults } = form.read();
     errors.clear();
     if (faults.length > 0) return errors.show(faults);
     form.setBusy(true);
+    announce("Sending the records.");
     try {
-      const body = new Blob([JSON.stringify(request)], { type: "application/json" });
-      const long = tooLong(body.size, await maxBodyBytes());
-      if (long) throw new Error(long);
-      announce(`Sending ${counted(request.loops.length, "loop")}.`);
-      const posted = await postCheck(body);
-      filledFrom = posted.id;
-      location.hash = addressOfCheck(posted.id);
+      const by = await sendOrder(order);
+      if (by.kind === "job") filledFrom = by.id;
+      location.hash = addressOfCheck(by.id, by.kind);
     } catch (error) {
       errors.fail(error);
     } finally {
@@ -106,12 +98,8 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
     form.setBusy(true);
     const { examplePlant } = await import("./example.ts");
     form.load(examplePlant());
-    await send(form.read());
+    await send();
   }
-
-  const cancel = async (): Promise<void> => {
-    if (job) await cancelJob(job.id).catch(complain);
-  };
 
   function complain(error: unknown): void {
     say(sentenceOf(error));
@@ -122,94 +110,98 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
     trouble.hidden = sentence === "";
   }
 
-  function take(next: CheckJob): void {
+  function take(next: CheckState): void {
     const first = content() === null;
-    job = next;
+    state = next;
     const found = content();
-    if (found) {
+    if (found && first) {
       list.show(found, unitNames(found.units), addressOf);
       list.setView(route.list);
     }
-    menu.show("v1/jobs", next.request ?? null);
+    if (first) menu.show("v1/jobs", next.request);
     show();
     if (found && first) announce(`${counted(found.loops.length, "loop")} checked. ${list.sentence()}`);
   }
 
-  function follow(id: string): void {
-    stop?.();
-    job = null;
+  function follow(of: CheckedBy): void {
+    source?.stop();
+    followed = of;
+    state = null;
     menu.show("", null);
-    stop = followCheck(id, {
-      onJob: take,
-      onProgress: progress.follow,
+    source = checkSource(of, {
+      onState: take,
       onTrouble(sentence) {
         say(sentence);
-        if (job === null) show();
+        if (state === null) show();
       },
     });
   }
 
-  /** The part of the screen for the address and the state of the job. */
+  /** The part of the screen for the address and the state of the check. */
   function partShown(): HTMLElement | null {
     if (route.of === null) return entry;
     if (content()) return route.loop === null ? list.element : loop.element;
-    // Nothing is known of a job that cannot be read.
-    if (job === null) return trouble.hidden ? progress.element : null;
-    return isFinal(job.status) ? null : progress.element;
+    // Nothing is known of a check that cannot be read.
+    if (state === null) return trouble.hidden ? progress.element : null;
+    return state.ended ? null : progress.element;
   }
 
   function show(): void {
     const part = partShown();
     for (const one of parts) one.hidden = one !== part;
     const found = content();
-    const row = found && route.loop !== null ? workRows(found).find(({ place }) => place === route.loop) : undefined;
-    if (part === loop.element && found && row)
-      loop.show(
-        { content: found, row, units: unitNames(found.units), address: addressOf },
-        { order: list.order(), list: formatRoute({ ...route, loop: null }) },
-        sentLoop(row.loop, row.place),
-      );
+    const row = part === loop.element && found ? workRows(found).find(({ place }) => place === route.loop) : undefined;
+    if (found && row) showLoop(found, row);
     else loop.leave();
-    if (part === progress.element && job) progress.show(job);
+    if (part === progress.element && state) progress.show(state);
     if (part === loop.element && !row) {
       loop.element.hidden = true;
       say("This check has no such loop.");
     }
-    if (part === null && job) say(whyNone(job));
-    showHead(part === loop.element ? (row?.loop.tag ?? TITLE) : "");
+    if (state?.failure) say(state.failure);
+    showHead(row?.loop.tag ?? "");
+  }
+
+  function showLoop(found: CheckContent, row: WorkRow): void {
+    const shown: LoopShown = { content: found, row, units: unitNames(found.units), address: addressOf };
+    const isShown = (): boolean => content() === found && route.loop === row.place;
+    loop.show(shown, { order: list.order(), list: formatRoute({ ...route, loop: null }) });
+    source?.whole(row.place).then(
+      (whole) => isShown() && loop.complete(shown, { ...whole, steps: stepsOf(row, whole) }),
+      (error: unknown) => isShown() && complain(error),
+    );
   }
 
   function showHead(tag: string): void {
     const found = content();
-    const name = job?.name || (found ? `Check of ${counted(found.loops.length, "loop")}` : "");
+    const size = found ? counted(found.loops.length, "loop") : "";
+    const name = state?.name || (found ? `Check of ${size}` : "");
     const text = route.of === null ? TITLE : tag || name || TITLE;
     if (heading.textContent !== text) heading.textContent = text;
     const partial = found?.partial ? " The check was stopped early: loops that it did not reach have no result." : "";
-    about.textContent = route.of === null || !found ? "" : tag ? name : `${job?.name ? counted(found.loops.length, "loop") : ""}${partial}`.trim();
+    about.textContent = route.of === null || !found ? "" : tag ? name : `${state?.name ? size : ""}${partial}`.trim();
     about.hidden = about.textContent === "";
     tools.hidden = route.of === null || route.loop !== null;
     save.hidden = !found;
-    menu.element.hidden = route.of === null || !job?.request || route.loop !== null;
-    again.hidden = !job?.request;
-    again.href = formatRoute({ ...EMPTY, from: route.of });
+    menu.element.hidden = route.of === null || !state?.request || route.loop !== null;
+    again.hidden = !state?.request;
+    again.href = formatRoute({ ...EMPTY, from: route.of?.id ?? null });
     document.title = `${route.of === null ? "" : `${text} · `}Check · Tunewright`;
   }
 
-  /** The loop as it was sent, and what the engineer can go on with. */
-  function sentLoop({ tag, action }: LoopCheck, place: number): SentLoop {
-    const sent = job?.request?.loops[place] ?? null;
-    const units = job?.request?.units;
-    if (!sent) return { loop: null, units, steps: [] };
+  /** What the engineer can go on with: the record of the loop. */
+  function stepsOf({ loop: { tag, action } }: WorkRow, { sent, units }: WholeLoop): HTMLElement[] {
+    if (!sent) return [];
     const test: IdentifyRequest = { name: tag, ...(units ? { units } : {}), record: recordOf(sent) };
     const first = action.code === "retune";
     const identify = h("button", { type: "button", class: first ? "primary" : null, onclick: () => events.onIdentify(test) }, "Identify from this record");
     const tune = h("button", { type: "button", onclick: () => void events.onTune(test).catch(complain) }, "Design from this record");
-    return { loop: sent, units, steps: first ? [identify, tune] : [identify] };
+    return first ? [identify, tune] : [identify];
   }
 
   async function fill(from: string): Promise<void> {
     if (filledFrom === from) return;
-    const request: CheckRequest | undefined = (job?.id === from ? job : await getCheck(from)).request;
+    const { request } = await getCheck(from);
     if (route.from !== from || !request || !isCheckRequest(request)) return;
     filledFrom = from;
     form.load(request);
@@ -217,10 +209,11 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
 
   /** On another part the focus goes to its heading; back on the work list to the loop that was shown. */
   function arrive(before: CheckRoute): void {
-    if (before.of === route.of && before.loop === route.loop) return;
+    const same = sameCheck(before.of, route.of);
+    if (same && before.loop === route.loop) return;
     window.scrollTo(0, 0);
-    if (before.of === route.of && before.loop !== null && route.loop !== null && document.activeElement !== document.body) return;
-    if (before.loop !== null && route.loop === null && before.of === route.of && list.focus(before.loop)) return;
+    if (same && before.loop !== null && route.loop !== null && document.activeElement !== document.body) return;
+    if (same && before.loop !== null && route.loop === null && list.focus(before.loop)) return;
     heading.focus();
   }
 
@@ -228,20 +221,18 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
     element,
     heading,
     dispose() {
-      stop?.();
+      source?.stop();
       loop.dispose();
     },
     open(next) {
       const before = route;
       route = next;
       say("");
-      if (next.of !== null && next.of !== job?.id) follow(next.of);
+      if (next.of !== null && !sameCheck(next.of, followed)) follow(next.of);
       if (next.of === null) {
-        stop?.();
-        stop = null;
         void earlier.look();
         if (next.from !== null) void fill(next.from).catch(complain);
-      } else if (job && !isFinal(job.status) && stop === null) follow(next.of);
+      }
       list.setView(next.list);
       show();
       if (element.isConnected) arrive(before);

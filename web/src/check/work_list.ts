@@ -1,19 +1,22 @@
 // The answer of a check: how many loops have which cause, the work list, the map of periods, cascades.
+import type { CheckContent } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { download } from "../plot/export.ts";
 import type { ListView } from "../routes.ts";
 import { orderOf, sortText } from "../words/comparison.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { nameColumn, shownRows, workColumns, workCsv, workRows } from "./columns.ts";
-import type { CheckContent, WorkColumn, WorkRow } from "./columns.ts";
+import type { WorkColumn, WorkRow } from "./columns.ts";
 import { countsSentence, workFilters } from "./filters.ts";
+import { followAddress, loopLink } from "./loop_link.ts";
+import type { LoopAddress } from "./loop_link.ts";
 import { periodMap } from "./period_map.ts";
 import { workTable } from "./table.ts";
 
 export interface WorkList {
   element: HTMLElement;
   /** `address`: of a loop's page. */
-  show(content: CheckContent, units: UnitNames, address: (place: number) => string): void;
+  show(content: CheckContent, units: UnitNames, address: LoopAddress): void;
   setView(view: ListView): void;
   /** Places of the rows that are shown, in their order. */
   order(): number[];
@@ -29,6 +32,7 @@ export function workList(announce: (sentence: string) => void, onView: (view: Li
   let columns: WorkColumn[] = [];
   let view: ListView | null = null;
   let shown: WorkRow[] = [];
+  let addressOf: LoopAddress = () => "";
   const filters = workFilters((part) => change({ ...view!, ...part }));
   const table = workTable(sortBy);
   const periods = h("section", { class: "card", "aria-labelledby": "check-periods" });
@@ -40,6 +44,8 @@ export function workList(announce: (sentence: string) => void, onView: (view: Li
     periods,
     cascades,
   );
+
+  followAddress(element, (place) => addressOf(place));
 
   function change(next: ListView): void {
     setView(next);
@@ -61,9 +67,9 @@ export function workList(announce: (sentence: string) => void, onView: (view: Li
     announce(`Sorted by ${(column ?? nameColumn).label}, ${falling ? "falling" : "rising"}.`);
   }
 
-  function showCascades({ cascades: pairs, loops }: CheckContent, address: (place: number) => string): void {
+  function showCascades({ cascades: pairs, loops }: CheckContent, address: LoopAddress): void {
     cascades.hidden = pairs.length === 0;
-    const link = (place: number): HTMLElement => h("a", { href: address(place) }, loops[place]!.tag);
+    const link = (place: number): HTMLElement => loopLink(place, loops[place]!.tag, address);
     cascades.replaceChildren(
       h("h2", { id: "check-cascades" }, "Cascades"),
       h(
@@ -77,6 +83,7 @@ export function workList(announce: (sentence: string) => void, onView: (view: Li
   return {
     element,
     show(content, units, address) {
+      addressOf = address;
       rows = workRows(content);
       columns = workColumns(rows, units);
       filters.build(rows);

@@ -3,7 +3,7 @@ import { batchCsv, cancelBatch, getBatch, hasEnded, jobsOfBatch, postAgain } fro
 import type { Batch, ListedJob } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { download } from "../plot/export.ts";
-import { formatRoute } from "../routes.ts";
+import { addressOfCheck, addressOfJob, formatRoute } from "../routes.ts";
 import { batchColumns, sorted } from "../words/job_list.ts";
 import type { BatchColumn } from "../words/job_list.ts";
 import { orderOf, sortText } from "../words/comparison.ts";
@@ -38,6 +38,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
   const again = h("button", { type: "button", onclick: () => void work(tryAgain) }, "Retry the failed jobs");
   const csv = h("button", { type: "button", onclick: () => void work(saveCsv) }, "Download CSV");
   const sheets = reportLink("Change sheets", "change-sheet.html", "batches");
+  const checked = h("a", { href: addressOfCheck(id, "batch"), hidden: true }, "Work list of the loops");
   const note = h("p", { class: "hint", hidden: true });
   let columns: BatchColumn[] = [];
   let heads: { column: BatchColumn; element: HTMLElement }[] = [];
@@ -48,6 +49,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
     shortcut("risk", "Highest risk"),
     shortcut("excess", "Farthest above the optimum"),
   ];
+  const first = h("p", { class: "actions" }, "First:", shortcuts.map(({ element: button }) => button));
   const element = h(
     "main",
     { class: "jobs", id: "main" },
@@ -61,6 +63,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
       h(
         "p",
         { class: "actions" },
+        checked,
         csv,
         sheets.element,
         cancel,
@@ -71,12 +74,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
     h(
       "section",
       { class: "card", "aria-label": "Loops" },
-      h(
-        "p",
-        { class: "actions" },
-        "First:",
-        shortcuts.map(({ element: button }) => button),
-      ),
+      first,
       note,
       table,
     ),
@@ -101,6 +99,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
     }
     for (const { column, element: button } of shortcuts)
       button.hidden = jobs.length > 0 && !columns.some(({ id }) => id === column);
+    first.hidden = shortcuts.every(({ element: button }) => button.hidden);
   }
 
   async function work(act: () => Promise<void>): Promise<void> {
@@ -143,7 +142,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
       return h(
         "th",
         { scope: "row" },
-        h("a", { href: formatRoute({ screen: "design", job: job.id, entry: null }) }, text),
+        h("a", { href: job.outline?.check ? addressOfCheck(job.id) : addressOfJob(job.id, "design") }, text),
       );
     const error =
       column.id === "status" && job.outline?.error ? h("span", { class: "hint job-error" }, job.outline.error) : null;
@@ -152,6 +151,8 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
 
   function showRows(): void {
     showHeads();
+    checked.hidden = !jobs.some(({ outline }) => outline?.check);
+    if (batch) showHead(batch);
     for (const { column, element: head } of heads) {
       if (column.id === order.column) head.setAttribute("aria-sort", order.falling ? "descending" : "ascending");
       else head.removeAttribute("aria-sort");
@@ -173,7 +174,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
   function showHead(now: Batch): void {
     const { succeeded, failed, cancelled, queued, running } = now.counts;
     const parts = [
-      `${succeeded} tuned`,
+      `${succeeded} ${checked.hidden ? "tuned" : "checked"}`,
       failed && `${failed} failed`,
       cancelled && `${cancelled} cancelled`,
       running && `${running} running`,
@@ -187,7 +188,8 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
     bar.hidden = hasEnded(now);
     cancel.hidden = hasEnded(now);
     again.hidden = !hasEnded(now) || failed + cancelled === 0;
-    sheets.show(succeeded > 0 ? now.id : null, now.created_at);
+    // A check has no settings to enter.
+    sheets.show(succeeded > 0 && checked.hidden ? now.id : null, now.created_at);
   }
 
   async function read(): Promise<boolean> {

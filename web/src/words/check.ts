@@ -1,5 +1,5 @@
 // The check of loops in operation in words: causes, actions, owners, and the figures of a loop.
-import type { CheckLoop, LoopCheck, LoopRank } from "../api/types.ts";
+import type { CheckLoop, ListedLoop, LoopCheck, LoopRank } from "../api/types.ts";
 import type { ExplainedName } from "./explained.ts";
 import { figureUnit } from "./figure_units.ts";
 import type { MeasuredType } from "./figure_units.ts";
@@ -134,7 +134,7 @@ class Rows {
 
 const share = (value: number): string => formatShare(value);
 
-function performanceRows({ performance }: LoopCheck, units: UnitNames): LoopFigure[] {
+function performanceRows({ performance }: ListedLoop, units: UnitNames): LoopFigure[] {
   const { harris, why_null } = performance;
   const time = units.time;
   const harrisText = harris ? `${formatNumber(harris.low, 2)} to ${formatNumber(harris.high, 2)}` : DASH;
@@ -152,7 +152,7 @@ function performanceRows({ performance }: LoopCheck, units: UnitNames): LoopFigu
   ];
 }
 
-function serviceRows({ service }: LoopCheck, units: UnitNames): LoopFigure[] {
+function serviceRows({ service }: ListedLoop, units: UnitNames): LoopFigure[] {
   return new Rows(units, null, service.why_null)
     .add("In automatic", "in_automatic", "automatic", service.automatic, share, "%")
     .add("In manual", null, "manual", service.manual, share, "%")
@@ -162,7 +162,7 @@ function serviceRows({ service }: LoopCheck, units: UnitNames): LoopFigure[] {
     .add("Measurement at rest", "measurement_still", "measurement_still", service.measurement_still, share, "%").rows;
 }
 
-function recordRows({ quality }: LoopCheck, units: UnitNames): LoopFigure[] {
+function recordRows({ quality }: ListedLoop, units: UnitNames): LoopFigure[] {
   const none = (value: number): string => (value === 0 ? "none found" : formatNumber(value));
   const step = (name: "y_step" | "u_step"): string => (quality[name] === 0 ? "" : figureUnit("CheckedRecord", name, units));
   return new Rows(units, "CheckedRecord", undefined)
@@ -178,7 +178,7 @@ function recordRows({ quality }: LoopCheck, units: UnitNames): LoopFigure[] {
 }
 
 /** The valve and its cycle; without rows if the cause has none. */
-function causeRows({ cause }: LoopCheck, units: UnitNames): LoopFigure[] {
+function causeRows({ cause }: ListedLoop, units: UnitNames): LoopFigure[] {
   return new Rows(units, "LoopCause", cause.why_null)
     .add(cause.verdict === "backlash" ? "Width of the backlash" : "Dead band and stick", "valve_size", "size", cause.size)
     .add("Jump when it breaks loose", "valve_jump", "jump", cause.jump)
@@ -187,7 +187,7 @@ function causeRows({ cause }: LoopCheck, units: UnitNames): LoopFigure[] {
 }
 
 /** All figures of a loop except its oscillations. */
-export const loopFigures = (loop: LoopCheck, units: UnitNames): LoopFigures[] =>
+export const loopFigures = (loop: ListedLoop, units: UnitNames): LoopFigures[] =>
   [
     { title: "Cause", rows: causeRows(loop, units) },
     { title: "Error and output", rows: performanceRows(loop, units) },
@@ -200,7 +200,7 @@ export const periodText = ({ period, period_error }: LoopCheck["oscillation"]["p
   formatUncertain(period, period_error);
 
 /** "38 %: 0.520 °C of a mean error of 1.36 °C"; "" if it is not known. */
-export function gainWords(rank: LoopRank, loop: LoopCheck, units: UnitNames): string {
+export function gainWords(rank: LoopRank, loop: ListedLoop, units: UnitNames): string {
   if (typeof rank.share !== "number" || typeof rank.gain !== "number") return "";
   const unit = units.y ? ` ${units.y}` : "";
   return `${estimate(rank.share)} %: ${formatNumber(rank.gain)}${unit} of a mean error of ${formatNumber(loop.performance.mean_error)}${unit}`;

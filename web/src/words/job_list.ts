@@ -1,5 +1,6 @@
 // Jobs in lists: their cells in words, and the orders of a batch.
 import type { Controller, ListedJob, Outline, Plant } from "../api/types.ts";
+import { verdictWords } from "./check.ts";
 import { figureUnit } from "./figure_units.ts";
 import { DASH, formatNumber, formatParameter, formatSetting, quotient, unitNames, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
@@ -39,9 +40,9 @@ export function shortPlant(outline: Outline | undefined): string {
 const rangeOutline = ({ scheduling, points }: NonNullable<Outline["range"]>): string =>
   `${points} points${scheduling ? ` over ${scheduling}` : ""}`;
 
-/** "60 loops, first FIC101". */
-const checkOutline = ({ loops, tag }: NonNullable<Outline["check"]>): string =>
-  `${loops ?? 0} ${loops === 1 ? "loop" : "loops"}${tag ? `, first ${tag}` : ""}`;
+/** "60 loops, first FIC101"; of one loop its cause. */
+const checkOutline = ({ loops, tag, verdict }: NonNullable<Outline["check"]>): string =>
+  loops === 1 ? verdictWords(verdict ?? "").toLowerCase() : `${loops ?? 0} loops${tag ? `, first ${tag}` : ""}`;
 
 function denominator(plant: Plant): string | null {
   if (plant.type === "fopdt") return lag(plant["T"]);
@@ -67,7 +68,7 @@ export function gain(job: ListedJob): number | null {
 /** The largest Ms on any plant that the loop may meet; a tuned loop without a known Ms counts as the riskiest. */
 export function risk(job: ListedJob): number | null {
   const outline = job.outline;
-  if (job.status !== "succeeded" || !outline?.method) return null;
+  if (job.status !== "succeeded" || !outline?.method || outline.check) return null;
   const figure = outline.worst_Ms === undefined ? outline.Ms : outline.worst_Ms;
   return typeof figure === "number" ? figure : Infinity;
 }

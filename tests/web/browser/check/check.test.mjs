@@ -1,7 +1,7 @@
 // The screen Check against the real service: files in, the work list and a loop's page out, and the way on to a design.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { accessibilityViolations, browserTests, dropFile, openPage, tracesShown } from "../../harness.mjs";
+import { accessibilityViolations, browserTests, dropFile, tracesShown } from "../../harness.mjs";
 
 const tests = browserTests();
 const { withPage } = tests;
@@ -181,20 +181,3 @@ test("faults stand at their fields, files that are not UTF-8 are read as the ser
     assert.deepEqual([loop.range.op, loop.columns], [[5, 95], { y: "PV [°C]" }]);
   });
 });
-
-test("files that are too long together are refused before they are sent", async () => {
-  const opened = await openPage(tests.browser);
-  const { page } = opened;
-  await page.route("**/healthz", (route) => route.fulfill({ json: { status: "ok", max_body_bytes: 20_000 } }));
-  await page.goto(`${tests.service.base}/#/check`);
-  await choose(page, [file("A.csv", swinging(60))]);
-  await page.getByText(/^The records have 0\.0 MiB together; one check takes at most 0\.0 MiB\./).waitFor();
-  let sent = 0;
-  page.on("request", (request) => (sent += request.method() === "POST" && request.url().endsWith("/v1/jobs") ? 1 : 0));
-  await page.getByRole("button", { name: "Check 1 loop" }).click();
-  await page.getByRole("group", { name: "Problems to fix" }).waitFor();
-  assert.equal(sent, 0);
-  assert.deepEqual(await opened.faults(), []);
-  await opened.close();
-});
-

@@ -23,6 +23,30 @@ async function withJob(address, job, options, body, routes = {}) {
   await opened.close();
 }
 
+/** A page on which the service has this batch: its check, and a job for each of its loops. */
+async function withBatch(address, ended, body, routes = {}) {
+  const answer = madeAnswer();
+  const bare = answer.loops.map(({ trend: _t, excerpt: _e, spectrum: _s, autocorrelation: _a, ...loop }) => loop);
+  const counts = (done) => ({ queued: 8 - done, running: 0, succeeded: done, failed: 0, cancelled: 0 });
+  const state = () => ({ id: ID, name: "Unit 22", status: ended() ? "ended" : "running", total: 8, counts: counts(ended() ? 8 : 3), progress: { fraction: 0 }, cancel_requested: false, created_at: "2026-05-04T06:00:00Z", finished_at: null, links: {} });
+  const listed = answer.loops.map((loop, index) => ({ id: `job${index}`, name: loop.tag, index, status: "succeeded", created_at: "2026-05-04T06:00:00Z" }));
+  const opened = await openPage(tests.browser);
+  const { page } = opened;
+  await page.route(`**/v1/batches/${ID}`, (route) => route.fulfill(json(state())));
+  await page.route(`**/v1/batches/${ID}/check`, (route) => route.fulfill(json({ ...answer, loops: bare, complete: true })));
+  await page.route(`**/v1/jobs?batch=${ID}*`, (route) => route.fulfill(json({ jobs: [...listed].reverse(), next: null })));
+  await page.route(/\/v1\/jobs\/job\d$/, (route) => {
+    const loop = answer.loops[Number(route.request().url().slice(-1))];
+    return route.fulfill(json(madeJob("x", { ...answer, loops: [loop], clusters: [], cascades: [], ranking: [] })));
+  });
+  for (const [end, fulfil] of Object.entries(routes)) await page.route(`**${end}`, fulfil);
+  await page.goto(`${tests.service.base}/${address}`);
+  await body(page);
+  assert.deepEqual(await opened.faults(), []);
+  await page.unrouteAll({ behavior: "ignoreErrors" });
+  await opened.close();
+}
+
 const made = () => madeJob(ID, madeAnswer());
 const rows = (page) => page.locator(".work-table tbody tr");
 const tags = (page) => rows(page).locator("th a").allInnerTexts();
@@ -199,6 +223,64 @@ test("a long list comes in parts as it is scrolled, and each loop is found", asy
     await page.getByRole("link", { name: "Work list", exact: true }).click();
     await page.waitForFunction(() => document.activeElement.textContent === "FIC-1299");
   });
+});
+
+test("a batch is followed until it has ended; its list has no curves, the pages of its loops have them", async () => {
+  let over = false;
+  await withBatch(`#/batches/${ID}/check`, () => over, async (page) => {
+    await page.getByText("3 of 8 loops checked.").waitFor();
+    over = true;
+    await rows(page).first().waitFor();
+    assert.deepEqual(await tags(page), IN_ORDER);
+    assert.equal(await page.getByRole("columnheader", { name: "Last periods" }).count(), 0);
+    assert.equal(await page.title(), "Unit 22 · Check · Tunewright");
+    await page.getByRole("link", { name: "TIC-104", exact: true }).first().click();
+    await page.getByRole("heading", { name: "TIC-104", level: 1 }).waitFor();
+    await page.getByRole("heading", { name: "Autocorrelation of the error" }).waitFor();
+    assert.match(page.url(), new RegExp(`#/batches/${ID}/check\\?loop=3$`));
+    await page.getByRole("button", { name: "Identify from this record" }).waitFor();
+    await page.getByRole("link", { name: /^Next/ }).click();
+    await page.getByRole("heading", { name: "PIC-106", level: 1 }).waitFor();
+    await page.getByRole("heading", { name: "Autocorrelation of the error" }).waitFor();
+    assert.deepEqual(await accessibilityViolations(page), []);
+  }, { "/v1/check": (route) => route.fulfill(json(cureAnswer({ settings: SETTINGS, worst_Ms: 1.4, error_ratio: 0.5, detail: "" }))) });
+});
+
+test("records that are too long for one request, and a file of many loops, become a batch", async () => {
+  const sent = [];
+  const receive = (route) => {
+    const request = route.request();
+    sent.push([request.headers()["content-type"], new URL(request.url()).searchParams]);
+    return route.fulfill({ status: 202, contentType: "application/json", body: JSON.stringify({ id: ID }) });
+  };
+  const file = (name, text) => ({ name, mimeType: "text/csv", buffer: Buffer.from(text) });
+  const one = ["t,sp,pv,op", ...Array.from({ length: 300 }, (_, t) => `${t},50,${50 + Math.sin(t / 5)},${40 - Math.cos(t / 5)}`)].join("\n");
+  const wide = ["time [s],FIC1.SP,FIC1.PV,FIC1.OP,TIC2.SP,TIC2.PV,TIC2.OP", ...Array.from({ length: 300 }, (_, t) => `${t},50,${50 + Math.sin(t / 5)},${40 - Math.cos(t / 5)},20,${20 + Math.sin(t / 9)},${30 - Math.cos(t / 9)}`)].join("\n");
+  const routes = { "/healthz": (route) => route.fulfill(json({ status: "ok", max_body_bytes: 15_000 })), "/v1/batches?kind=check*": receive };
+  await withBatch("#/check", () => true, async (page) => {
+    await page.locator("input[type=file]").setInputFiles([file("A.csv", one), file("B.csv", one)]);
+    await page.getByRole("button", { name: "Check 2 loops" }).click();
+    await rows(page).first().waitFor();
+    assert.match(page.url(), new RegExp(`#/batches/${ID}/check$`));
+    await page.getByRole("link", { name: "New check" }).click();
+    await page.getByRole("button", { name: "Remove all" }).click();
+    await page.locator("input[type=file]").setInputFiles([file("plant.csv", wide)]);
+    await page.getByText("This file has the columns of several loops.").waitFor();
+    assert.equal(await page.getByRole("table", { name: "Loops to check" }).count(), 0);
+    assert.deepEqual(await accessibilityViolations(page), []);
+    await page.getByRole("button", { name: "Check all loops of the file" }).click();
+    await rows(page).first().waitFor();
+    // The columns of one loop make it that loop.
+    await page.getByRole("link", { name: "New check" }).click();
+    await page.getByText("How the files are read").click();
+    await page.getByLabel("Measurement (PV)").selectOption("FIC1.PV");
+    await page.getByLabel("Controller output (OP)").selectOption("FIC1.OP");
+    await page.getByRole("button", { name: "Check 1 loop" }).waitFor();
+  }, routes);
+  assert.deepEqual(sent.map(([type, options]) => [type, options.get("kind"), options.get("name")]), [
+    ["application/x-ndjson", "check", null],
+    ["text/csv", "check", "plant"],
+  ]);
 });
 
 for (const [window, options] of WINDOWS)

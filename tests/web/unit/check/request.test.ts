@@ -3,8 +3,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { isCheckRequest } from "../../../../web/src/api/check.ts";
 import { examplePlant } from "../../../../web/src/check/example.ts";
-import { tooLong } from "../../../../web/src/check/form.ts";
-import { kindOfTag, loopOfFile, NO_LOOPS, readCheck, recordOf, textsOf } from "../../../../web/src/check/request.ts";
+import { kindOfTag, linesOf, loopOfFile, NO_LOOPS, readCheck, readFile, recordOf, textsOf } from "../../../../web/src/check/request.ts";
 import { formatRoute, parseRoute, WHOLE_LIST } from "../../../../web/src/routes.ts";
 
 const EMPTY = { name: "", cluster: true, reading: { columns: {}, timeUnit: "" }, loops: [], base: {} };
@@ -68,10 +67,23 @@ test("faults stand at their fields", () => {
   assert.deepEqual(readCheck(EMPTY).errors, [{ pointer: "/loops", detail: NO_LOOPS }]);
 });
 
-test("records that are too long for one request are named with their size", () => {
-  const mebi = 1024 * 1024;
-  assert.equal(tooLong(8 * mebi, 8 * mebi), "");
-  assert.match(tooLong(9.5 * mebi, 8 * mebi), /^The records have 9\.5 MiB together; one check takes at most 8\.0 MiB\./);
+test("loops that are too long for one request are lines of a batch, each with the terms of all", () => {
+  const request = { name: "Unit 21", units: { time: "min" }, timeout_s: 900, loops: [{ tag: "A", csv: CSV }, { csv: CSV }] };
+  const lines = linesOf(request);
+  assert.ok(lines.every((line) => line.endsWith("\n") && line.indexOf("\n") === line.length - 1));
+  assert.deepEqual(lines.map((line) => JSON.parse(line)), [
+    { name: "A", units: { time: "min" }, timeout_s: 900, loops: [{ tag: "A", csv: CSV }] },
+    { units: { time: "min" }, timeout_s: 900, loops: [{ csv: CSV }] },
+  ]);
+});
+
+test("a file of several loops is sent as it is, and alone", () => {
+  const plant = loopOfFile("plant.csv", CSV);
+  assert.deepEqual(readFile({ ...EMPTY, reading: { columns: {}, timeUnit: "min" }, loops: [plant] }), {
+    order: { kind: "file", csv: CSV, options: { name: "plant", "units.time": "min" } },
+    errors: [],
+  });
+  assert.deepEqual(readFile({ ...EMPTY, name: "Unit 21", loops: [plant, plant] }).errors.map(({ pointer }) => pointer), ["/loops/0/tag"]);
 });
 
 test("a loop's record goes on to Identify as it was read", () => {
@@ -81,17 +93,19 @@ test("a loop's record goes on to Identify as it was read", () => {
 });
 
 test("the address of a check holds the loop, the order and what is shown", () => {
+  const of = { kind: "job" as const, id: "j1" };
   const whole = { screen: "check" as const, of: null, from: null, loop: null, list: WHOLE_LIST };
   for (const route of [
     whole,
     { ...whole, from: "j1" },
-    { ...whole, of: "j1" },
-    { ...whole, of: "j1", loop: 12 },
-    { ...whole, of: "j1", loop: 0, list: { sort: "-gain", cause: "insufficient-data", owner: "control", text: "FIC 1" } },
+    { ...whole, of },
+    { ...whole, of, loop: 12 },
+    { ...whole, of: { kind: "batch" as const, id: "b1" }, loop: 3 },
+    { ...whole, of, loop: 0, list: { sort: "-gain", cause: "insufficient-data", owner: "control", text: "FIC 1" } },
   ])
     assert.deepEqual(parseRoute(formatRoute(route)), route);
-  assert.equal(formatRoute({ ...whole, of: "j1", list: { ...WHOLE_LIST, sort: "-gain" } }), "#/jobs/j1/check?sort=-gain");
-  assert.deepEqual(parseRoute("#/jobs/j1/check?loop=x"), { ...whole, of: "j1" });
+  assert.equal(formatRoute({ ...whole, of, list: { ...WHOLE_LIST, sort: "-gain" } }), "#/jobs/j1/check?sort=-gain");
+  assert.deepEqual(parseRoute("#/jobs/j1/check?loop=x"), { ...whole, of });
 });
 
 test("the example plant is the same every time: six loops with a common clock", () => {

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { eventsIn } from "../../../../web/src/api/events.ts";
+import { earlierOf } from "../../../../web/src/check/earlier.ts";
 import { counts, mendedBefore, shownRows, workColumns, workCsv, workRows } from "../../../../web/src/check/columns.ts";
 import { alongAxis, clusterOf, periodGroups, periodRange, periodTicks, ridge } from "../../../../web/src/check/periods.ts";
 import { WHOLE_LIST } from "../../../../web/src/routes.ts";
@@ -123,4 +124,19 @@ test("events are read whole, however the stream is cut", () => {
     ]);
     assert.equal(second.rest, "");
   }
+});
+
+test("earlier checks are jobs, and batches once however many jobs they have", () => {
+  const job = (id: string, more: object) => ({ id, name: null, status: "succeeded", created_at: "2026-05-04T06:00:00Z", outline: { method: "check", check: { loops: 1, tag: "A", verdict: "tight", action: "retune" } }, ...more });
+  const batch = { id: "b1", name: "Unit 22", total: 500, created_at: "2026-05-04T05:00:00Z" };
+  const found = earlierOf(
+    [job("j1", { name: "Unit 21" }), job("x", { batch: "b1" }), job("y", { batch: "b1" }), job("z", { batch: "gone" }), job("j2", { outline: { method: "robust" } }), job("j3", { outline: { method: "check", check: { loops: 3, tag: "A", verdict: "tight", action: "retune" } } })] as never,
+    [batch] as never,
+    Date.parse("2026-05-04T07:00:00Z"),
+  );
+  assert.deepEqual(found, [
+    { address: "#/jobs/j1/check", name: "Unit 21", words: "tuned too tight, 1 h" },
+    { address: "#/batches/b1/check", name: "Unit 22", words: "500 loops, 2 h" },
+    { address: "#/jobs/j3/check", name: "Check j3", words: "3 loops, first A, tuned too tight, 1 h" },
+  ]);
 });

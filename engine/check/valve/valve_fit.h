@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/check/valve_model.h"
+#include "engine/check/valve/valve_model.h"
 
 namespace tunewright::check {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/check/plant_check.h"
+#include "engine/check/together/plant_check.h"
 
 namespace tunewright::check {
 

@@ -1,4 +1,4 @@
-#include "engine/check/valve_model.h"
+#include "engine/check/valve/valve_model.h"
 
 #include <array>
 #include <cmath>

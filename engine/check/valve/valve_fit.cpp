@@ -1,8 +1,9 @@
-#include "engine/check/valve_fit.h"
+#include "engine/check/valve/valve_fit.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "engine/check/samples.h"

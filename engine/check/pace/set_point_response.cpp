@@ -1,4 +1,4 @@
-#include "engine/check/set_point_response.h"
+#include "engine/check/pace/set_point_response.h"
 
 #include <algorithm>
 #include <cmath>

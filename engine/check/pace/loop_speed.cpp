@@ -1,4 +1,4 @@
-#include "engine/check/loop_speed.h"
+#include "engine/check/pace/loop_speed.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

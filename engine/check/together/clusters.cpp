@@ -1,4 +1,4 @@
-#include "engine/check/clusters.h"
+#include "engine/check/together/clusters.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -1,6 +1,7 @@
-#include "engine/check/loop_law.h"
+#include "engine/check/pace/loop_law.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>

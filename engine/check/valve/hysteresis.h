@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "engine/check/valve_fit.h"
+#include "engine/check/valve/valve_fit.h"
 
 namespace tunewright::check {
 

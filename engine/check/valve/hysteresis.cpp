@@ -1,4 +1,4 @@
-#include "engine/check/hysteresis.h"
+#include "engine/check/valve/hysteresis.h"
 
 #include <Eigen/Core>
 #include <algorithm>

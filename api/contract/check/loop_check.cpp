@@ -5,6 +5,7 @@
 #include "api/contract/controller.h"
 #include "api/contract/plant/plant.h"
 #include "api/contract/result/evaluation.h"
+#include "engine/check/action.h"
 
 namespace tunewright::api {
 namespace {
@@ -110,14 +111,14 @@ const Description<Evidence>& evidence_contract() {
 
 Codec<Confidence> confidence() {
     using enum Confidence;
-    return only_answered(choice<Confidence>({{"sure", sure}, {"likely", likely}, {"open", open}}));
+    return choice<Confidence>({{"sure", sure}, {"likely", likely}, {"open", open}});
 }
 
 const Description<Cause>& cause_contract() {
     static const auto description = [] {
         Description<Cause> d("LoopCause", "Why the loop is as it is.");
         d.field("verdict", &Cause::verdict, only_answered(check_verdict()), "The cause.")
-            .field("confidence", &Cause::confidence, confidence(),
+            .field("confidence", &Cause::confidence, only_answered(confidence()),
                    "open: the verdict is undetermined or insufficient-data.")
             .field("evidence", &Cause::evidence, answered_list(evidence_contract()), "The strongest first.")
             .field("alternatives", &Cause::alternatives, only_answered(list_of(check_verdict())),
@@ -390,8 +391,19 @@ double number_in(const Json& object, const char* name) {
     return at != object.end() && at->is_number() ? at->get<double>() : 0;
 }
 
+Figure figure_in(const Json& object, const char* name) {
+    const auto at = object.find(name);
+    if (at != object.end() && at->is_number()) return at->get<double>();
+    return no_figure(object.value("why_null", Json::object()).value(name, ""));
+}
+
 void read_cause(const Json& from, Cause& cause, Reader& reader) {
     if (from.contains("verdict")) check_verdict().read(from["verdict"], cause.verdict, reader);
+    if (from.contains("confidence")) confidence().read(from["confidence"], cause.confidence, reader);
+    cause.size = figure_in(from, "size");
+    cause.jump = figure_in(from, "jump");
+    cause.period = figure_in(from, "period");
+    cause.why_open = from.value("why_open", "");
     for (const Json& other : from.value("alternatives", Json::array())) {
         Verdict verdict = Verdict::undetermined;
         check_verdict().read(other, verdict, reader);
@@ -421,8 +433,7 @@ check::LoopCheck read_loop_check(const Json& loop) {
             {.period = number_in(period, "period"), .share = number_in(period, "share")});
     }
     read_cause(loop.value("cause", Json::object()), check.cause, reader);
-    if (const auto code = "/action/code"_json_pointer; loop.contains(code))
-        check_action().read(loop.at(code), check.action.code, reader);
+    check.action = action_for(check);  // a function of the cause
     if (loop.contains("shape")) shape_contract().read(loop["shape"], check.shape, reader);
     return check;
 }

@@ -11,6 +11,7 @@
 #include "api/csv/text.h"
 #include "api/csv/time_stamp.h"
 #include "api/describe/body.h"
+#include "api/historian/tags/loop_tags.h"
 #include "api/json/json.h"
 #include "api/json/writer.h"
 
@@ -58,6 +59,7 @@ std::vector<bool> automatic_rows(const TaggedLoop& loop) {
 
 check::LoopQuestion question_about(TaggedLoop loop, double seconds) {
     check::LoopQuestion question;
+    question.kind = kind_of_tag(loop.tag).kind;
     question.tag = std::move(loop.tag);
     question.seconds = seconds;
     question.record.automatic = automatic_rows(loop);

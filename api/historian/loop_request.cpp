@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "api/csv/time_stamp.h"
+#include "api/historian/tags/loop_tags.h"
 #include "api/json/writer.h"
 
 namespace tunewright::api {
@@ -102,6 +103,7 @@ std::string loop_request(const TaggedLoop& loop, const std::string& time_unit, b
     out.key("loops").begin_array();
     out.begin_object();
     out.key("tag").text(loop.tag);
+    if (const std::string_view kind = kind_of_tag(loop.tag).name; !kind.empty()) out.key("kind").text(kind);
     out.key("csv").text(rows_text(loop, zero));
     write_columns(loop, out);
     if (seconds) out.key("time_unit").text(time_unit);

@@ -1,6 +1,7 @@
 #include "api/report/report.h"
 
 #include "api/json/digest.h"
+#include "api/report/check_words.h"
 #include "api/report/figures.h"
 #include "api/report/sections.h"
 #include "engine/number_text.h"
@@ -25,6 +26,15 @@ std::string range_report(ChosenEntry& found, const ReportWords& words) {
                            request_section(document.at("request"), said.origin));
 }
 
+std::string check_report(ChosenEntry& found, const ReportWords& words) {
+    const ReportWords said = said_of(found, words);
+    const Json document = document_of(found);
+    const ReportInput subject = subject_of_check(document);
+    const std::string title = title_of(subject, said, "loop check", "Loop check");
+    return page(title, head_of(subject, said, title, check_summary(subject.result.value())) + check_sections(subject) +
+                           request_section(document.at("request"), said.origin));
+}
+
 std::string full_report(const ReportInput& subject, const ReportWords& said) {
     const std::string title = report_title(subject, said);
     return page(title, head_of(subject, said, title, about_of(subject)) + verdict_section(subject) +
@@ -42,6 +52,7 @@ std::variant<std::string, Problem> report_html(const ResultSource& source, std::
     ChosenEntry found;
     if (auto problem = read_result(source, found)) return *std::move(problem);
     if (index.empty() && is_of_range(found.result)) return range_report(found, words);
+    if (index.empty() && is_of_check(found.result)) return check_report(found, words);
     return about_entry(found, index, words, full_report);
 } catch (const Json::exception&) {  // a file that only resembles a result: its members have other types
     return not_a_result();

@@ -12,9 +12,9 @@
 
 namespace tunewright::api {
 
-/// The report of a controller, or of an operating range if the source is about one and `index` is "". HTML without
-/// scripts, well-formed XML. `index`: number of the controller in the result; "" for the first of the ranking that is
-/// not today's. 404 if there is no such controller, or it has none; 400 and 422 for texts that are not JSON.
+/// The report of a controller; with `index` "" of an operating range or of a check if the source is about one. HTML
+/// without scripts, well-formed XML. `index`: number of the controller in the result; "" for the first of the ranking
+/// that is not today's. 404 if there is no such controller, or it has none; 400 and 422 for texts that are not JSON.
 std::variant<std::string, Problem> report_html(const ResultSource& source, std::string_view index,
                                                const ReportWords& words);
 

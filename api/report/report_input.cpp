@@ -85,6 +85,8 @@ ReportInput subject_of(const Json& document, std::size_t index) {
 
 ReportInput subject_of_range(const Json& document) { return subject_at(document, "range"); }
 
+ReportInput subject_of_check(const Json& document) { return subject_at(document, "loops"); }
+
 std::size_t best_proposal(const ChosenEntry& found) {
     const Json& controllers = found.result.at("controllers");
     const Json ranking = found.result.value("ranking", Json::array());

@@ -45,6 +45,9 @@ ReportInput subject_of(const Json& document, std::size_t index);
 /// The subject for the document's operating range, which takes the place of the entry.
 ReportInput subject_of_range(const Json& document);
 
+/// The subject for the document's check: its entry is the list of loops.
+ReportInput subject_of_check(const Json& document);
+
 /// The first of the ranking that is not today's; today's if it is the only one.
 std::size_t best_proposal(const ChosenEntry& found);
 

@@ -47,7 +47,7 @@ Html request_section(const Json& request, const std::string& origin) {
     const std::string call = "curl -sS " + quoted((origin.empty() ? "http://127.0.0.1:8080" : origin) + "/v1/jobs") +
                              " -H 'Content-Type: application/json' -H 'Prefer: wait=60' -d ";
     Html out =
-        element("p", "Sending this request again gives the same settings.") +
+        element("p", "Sending this request again gives the same result.") +
         element("p",
                 element("a", "Save the request as a file",
                         {{"download", "request.json"}, {"href", "data:application/json;base64," + base64(whole)}}),

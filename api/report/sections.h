@@ -49,6 +49,8 @@ Html method_section(const ReportInput& subject);
 Html assumptions_section(const ReportInput& subject);
 /// The report of an operating range without its head and its request.
 Html range_sections(const ReportInput& subject);
+/// The report of a check without its head and its request: the plant's work list, then a page for each loop.
+Html check_sections(const ReportInput& subject);
 /// The whole request, as a file to save, as text and as a command. `origin`: of the service.
 Html request_section(const Json& request, const std::string& origin);
 

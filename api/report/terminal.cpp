@@ -8,6 +8,7 @@
 
 #include "api/json/json.h"
 #include "api/json/utf8.h"
+#include "api/report/check_words.h"
 #include "api/report/columns.h"
 #include "api/report/figures.h"
 #include "api/report/plot.h"
@@ -306,6 +307,102 @@ std::string range_text(std::string_view result) try {
     return out;
 } catch (const Json::exception&) {
     return std::string(result) + "\n";
+}
+
+namespace {
+
+constexpr std::size_t kExplainedLoops = 5;  // with sentences below the table of a check
+constexpr std::size_t kWidestTag = 40;
+
+/// The member of an object; null if there is none.
+Json member_of(const Json& object, const char* name) {
+    return object.is_object() ? object.value(name, Json()) : Json();
+}
+
+std::string short_tag(const Json& loop) {
+    const std::string tag = words(member_of(loop, "tag"));
+    return letters(tag) > kWidestTag ? std::string(whole_characters(tag, kWidestTag - 3)) + "..." : tag;
+}
+
+/// The entry of the ranking about a loop; null if there is none.
+Json rank_of(const Json& ranking, std::size_t loop) {
+    for (const Json& rank : ranking)
+        if (member_of(rank, "loop") == loop) return rank;
+    return {};
+}
+
+std::string percent_text(const Json& share) {
+    return share.is_number() ? std::to_string(std::lround(100 * share.get<double>())) + " %" : kUnknownFigure;
+}
+
+std::string unit_of(const Json& answer, const char* name, const char* fallback) {
+    const std::string unit = word_at(answer.value("units", Json::object()), name);
+    return unit.empty() ? fallback : unit;
+}
+
+std::string work_list(const Json& answer, const std::vector<std::size_t>& order) {
+    Columns columns(
+        {"", "loop", "cause", "confidence", "do first", "owner", with_unit("gain", unit_of(answer, "y", "")),
+         "of the error", "period (" + unit_of(answer, "time", "s") + ")"},
+        6);
+    for (std::size_t place = 0; place < order.size(); ++place) {
+        const Json& loop = answer.at("loops").at(order[place]);
+        const Json cause = member_of(loop, "cause"), action = member_of(loop, "action");
+        const Json rank = rank_of(answer.at("ranking"), order[place]);
+        columns.row({std::to_string(place + 1), short_tag(loop), verdict_title(words(member_of(cause, "verdict"))),
+                     words(member_of(cause, "confidence")), action_title(words(member_of(action, "code"))),
+                     owner_title(words(member_of(action, "owner"))), shown_figure(member_of(rank, "gain"), 3),
+                     percent_text(member_of(rank, "share")),
+                     shown_figure(member_of(member_of(loop, "oscillation"), "period"), 3)});
+    }
+    return columns.text();
+}
+
+std::string groups_of(const Json& answer) {
+    std::string out;
+    for (const Json& cluster : answer.value("clusters", Json::array()))
+        out += "Oscillate together: " + tags_of_loops(answer, member_of(cluster, "loops")) + "\n  " +
+               words(member_of(cluster, "detail")) + "\n";
+    for (const Json& pair : answer.value("cascades", Json::array()))
+        out += "Cascade: " + tag_of_loop(answer, member_of(pair, "master")) + " gives " +
+               tag_of_loop(answer, member_of(pair, "slave")) + " its set point.\n";
+    return out.empty() ? "" : "\n" + out;
+}
+
+/// The strongest evidence of the first loops that need work, and what to do.
+std::string reasons_of(const Json& answer, const std::vector<std::size_t>& order) {
+    std::string out;
+    std::size_t explained = 0, more = 0;
+    for (const std::size_t place : order) {
+        const Json& loop = answer.at("loops").at(place);
+        const Json action = member_of(loop, "action"), evidence = member_of(member_of(loop, "cause"), "evidence");
+        if (words(member_of(action, "code")) == "none") continue;
+        if (++explained > kExplainedLoops) {
+            ++more;
+            continue;
+        }
+        out += "\n" + words(member_of(loop, "tag")) + "\n" + sentences(evidence, "detail");
+        for (const char* part : {"/cause/why_open", "/action/detail", "/cure/detail"})
+            if (const std::string sentence = words(at(loop, part)); !sentence.empty()) out += "  " + sentence + "\n";
+    }
+    if (more > 0)
+        out += "\n" + std::to_string(more) + (more == 1 ? " more loop needs" : " more loops need") +
+               " work; the JSON (--pretty) has the evidence.\n";
+    return out;
+}
+
+}  // namespace
+
+std::string check_text(std::string_view answer) try {
+    const Json value = parsed_or_null(answer);
+    if (!is_of_check(value)) return std::string(answer) + "\n";
+    const std::vector<std::size_t> order = work_order(value);
+    std::string out =
+        check_summary(value) + "\n\n" + work_list(value, order) + groups_of(value) + reasons_of(value, order);
+    if (value.value("partial", false)) out += "\nThe check was stopped before all loops were checked.\n";
+    return out;
+} catch (const Json::exception&) {
+    return std::string(answer) + "\n";
 }
 
 namespace {

@@ -18,6 +18,11 @@ std::string result_text(std::string_view result);
 /// the runs and the verdict. Any other text is returned unchanged.
 std::string range_text(std::string_view result);
 
+/// An answer of a check, in the order of its ranking: a row for each loop with cause, confidence, what to do, owner,
+/// gain and period; loops that oscillate together; cascades; and sentences about the first loops. Any other text is
+/// returned unchanged.
+std::string check_text(std::string_view answer);
+
 /// An answer of identify: the candidates with their fits, the chosen one's parameters with standard errors, warnings.
 std::string model_text(std::string_view answer);
 

@@ -17,6 +17,7 @@
 #include "api/csv/cell.h"
 #include "api/csv/time_stamp.h"
 #include "api/historian/joined_loops.h"
+#include "api/report/terminal.h"
 #include "api/service.h"
 #include "server/cli/command_tree.h"
 #include "server/cli/interrupt.h"
@@ -244,7 +245,7 @@ private:
             std::cerr << "tunewright: stopped; no loop was checked.\n";
             return kInterrupted;
         }
-        const int written = write_answer(outcome.result_json, command_.output);
+        const int written = write_answer(outcome.result_json, command_.output, api::check_text);
         return outcome.status == api::JobOutcome::Status::cancelled ? kInterrupted : written;
     }
 

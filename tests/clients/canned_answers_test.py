@@ -2,7 +2,9 @@
 
 import http.server
 import json
+import pathlib
 import sys
+import tempfile
 import threading
 import unittest
 
@@ -79,6 +81,54 @@ class CannedTest(unittest.TestCase):
         self.assertEqual(told, [1, 2, 3])
         self.assertEqual([path[-6:] for _, path, _, _ in self.server.calls[1:]], ["from=0", "from=1", "from=2"])
         self.assertEqual(self.server.calls[0][3], b'{"name": "a"}\n{}\n{}\n')
+
+    def check_of(self, source, answer=None, total=1, **rest):
+        answer = answer or {"loops": [{"tag": "A"}, {"tag": "B"}], "ranking": [{"loop": 1}, {"loop": 0}], "complete": True}
+        rows = b"".join(json.dumps({"index": i}).encode() + b"\n" for i in range(total))
+        client = self.serve((202, {}, {"id": "b", "total": total}), (200, {}, rows), (200, {}, answer), (200, {}, answer))
+        return client, client.check(source, **rest)
+
+    def test_a_check_of_a_file_is_a_batch(self):
+        told = []
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "plant.csv")
+            path.write_bytes("t,A.PV [°C],A.OP\n".encode("cp1252"))
+            client, check = self.check_of(path, progress=lambda *at: told.append(at), name="unit 7",
+                                          units={"time": "min"}, total=2)
+            posted = self.server.calls[0]
+            self.assertEqual(posted[:2], ("POST", "/v1/batches?kind=check&name=unit+7&units.time=min"))
+            self.assertEqual((posted[2]["Content-Type"], posted[3]), ("text/csv", path.read_bytes()))
+        self.assertEqual([path for _, path, _, _ in self.server.calls[1:]],
+                         ["/v1/batches/b/results?follow=true&from=0", "/v1/batches/b/check"])
+        self.assertEqual(told, [(1, 2), (2, 2)])
+        self.assertEqual([loop["tag"] for loop in check.work_list], ["B", "A"])
+        client.changes("old", check)
+        self.assertEqual(self.server.calls[-1][1], "/v1/batches/b/check?before=old")
+        with self.assertRaisesRegex(LookupError, "a batch, b"):
+            client.report_html(check)
+
+    def test_a_check_of_a_folder_has_a_loop_for_each_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("FIC2.csv", "FIC1.CSV", "notes.txt"):
+                pathlib.Path(folder, name).write_text("t,y,u\n")
+            self.check_of(folder, total=2, settings=True)
+            lines = [json.loads(line) for line in self.server.calls[0][3].splitlines()]
+            self.assertEqual(lines, [{"loops": [{"tag": tag, "csv": "t,y,u\n"}], "settings": True}
+                                     for tag in ("FIC1", "FIC2")])
+            self.assertEqual(self.server.calls[0][2]["Content-Type"], "application/x-ndjson")
+        with tempfile.TemporaryDirectory() as empty, self.assertRaisesRegex(FileNotFoundError, "no file that ends"):
+            self.serve().check(empty)
+
+    def test_a_check_of_a_frame_sends_its_columns(self):
+        class Frame:
+            index = None
+
+            def to_csv(self, index, index_label):
+                return "t,A.PV,A.OP\n"
+
+        Frame.index = type("RangeIndex", (), {"name": None})
+        self.check_of(Frame())
+        self.assertEqual(self.server.calls[0][1:4:2], ("/v1/batches?kind=check", b"t,A.PV,A.OP\n"))
 
     def test_a_design_that_a_cancelled_search_had_is_kept(self):
         ended = {**DONE, "status": "cancelled", "partial": True}

@@ -139,6 +139,37 @@ class ClientTest(unittest.TestCase):
         self.assertEqual(told, [(1, 3), (2, 3), (3, 3)])
         self.assertEqual(self.client.get("/v1/batches")["batches"][0]["name"], "unit 7")
 
+    def test_a_check_of_given_loops_is_a_job_with_a_report(self):
+        rows = [(t, 20 + (3 * t) % 17 * 0.25, 30 + t % 7) for t in range(400)]
+        columns = dict(zip("tyu", map(Array, map(list, zip(*rows)))))
+        check = self.client.check([{"tag": "FIC1", "record": columns}, {"tag": "FIC2", "csv": "t,y,u\nno,1,2\n"}],
+                                  name="unit 7", cluster=False)
+        self.assertEqual([loop["tag"] for loop in check["loops"]], ["FIC1", "FIC2"])
+        self.assertEqual(check["loops"][0]["quality"]["rows"], 400)
+        self.assertEqual(sorted(loop["tag"] for loop in check.work_list), ["FIC1", "FIC2"])
+        self.assertEqual(check["loops"][1]["cause"]["verdict"], "insufficient-data")
+        self.assertIn("unit 7: loop check", self.client.report_html(check))
+        with self.assertRaisesRegex(LookupError, "no batch"):
+            self.client.changes("other", check)
+        with self.assertRaisesRegex(LookupError, "work list"):
+            self.client.wait(check.job["id"]).best
+
+    def test_a_check_of_a_file_judges_its_loops_together_and_is_compared_later(self):
+        head = "Time,FIC1.PV,FIC1.OP,FIC2.PV,FIC2.OP"
+        lines = ["%d,%.2f,%d,%.2f,%d" % (t, 20 + 3 * t % 17 * 0.25, 30 + t % 7, 20 + 5 * t % 17 * 0.25, 30 + t % 9)
+                 for t in range(400)]
+        told = []
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "plant.csv")
+            path.write_text("\n".join([head, *lines]) + "\n")
+            checks = [self.client.check(path, lambda *at: told.append(at), name="unit 7") for _ in range(2)]
+        for check in checks:
+            self.assertEqual(sorted(loop["tag"] for loop in check.work_list), ["FIC1", "FIC2"])
+            self.assertTrue(check["complete"])
+        self.assertEqual(told, [(1, 2), (2, 2)] * 2)
+        changes = self.client.changes(checks[0], checks[1])["changes"]
+        self.assertEqual([each["change"]["significant"] for each in changes], [False, False])
+
     def test_leaving_the_rows_early_cancels_the_rest(self):
         rows = self.client.batch([QUICK, LONG, LONG, LONG], name="left")
         self.assertEqual(next(rows)["status"], "succeeded")

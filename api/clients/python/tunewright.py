@@ -23,7 +23,7 @@ from urllib.error import HTTPError
 from urllib.parse import quote, urlencode
 from urllib.request import Request, urlopen
 
-__all__ = ["Client", "Fault", "Problem", "Result", "record"]
+__all__ = ["Check", "Client", "Fault", "Problem", "Result", "record"]
 
 Json = Dict[str, Any]
 Methods = Sequence[Union[str, Mapping[str, Any]]]
@@ -70,11 +70,29 @@ class Result(Dict[str, Any]):
     @property
     def best(self) -> Json:
         """The entry that ranks first. An operating range has no ranking: its answer is in result["range"]."""
+        if "loops" in self:
+            raise LookupError('This result is a check of loops: its work list is in result["ranking"], its loops in '
+                              'result["loops"].')
         if "ranking" not in self:
             raise LookupError('This result has no ranking: an operating range is answered in result["range"], with '
                               'its one setting ("one") and its rows ("schedule").')
         entry: Json = self["controllers"][self["ranking"][0]]
         return entry
+
+
+class Check(Dict[str, Any]):
+    """The answer of a check: {loops, clusters, cascades, ranking, ...}. `batch` is the id of its batch, for changes();
+    `job` the job of a check of given loops, for report_html(). The other of the two is None."""
+
+    def __init__(self, answer: Mapping[str, Any], batch: Optional[str] = None, job: Optional[Json] = None) -> None:
+        super().__init__(answer)
+        self.batch = batch
+        self.job = job
+
+    @property
+    def work_list(self) -> List[Json]:
+        """The loops in the order in which to work on them."""
+        return [self["loops"][rank["loop"]] for rank in self["ranking"]]
 
 
 def record(source: Any, **fields: Any) -> Json:
@@ -87,9 +105,7 @@ def record(source: Any, **fields: Any) -> Json:
     if isinstance(source, Mapping):
         return {**source, **fields}
     if hasattr(source, "to_csv"):
-        dates = type(source.index).__name__ == "DatetimeIndex"
-        name = source.index.name or ("time" if dates else None)
-        source = source.to_csv(index=name is not None, index_label=name)
+        source = _frame_text(source)
     elif isinstance(source, os.PathLike) or "\n" not in source:
         with open(source, "rb") as file:
             source = _text(file.read())
@@ -170,8 +186,9 @@ class Client:
         """Deletes a job that has ended."""
         self._open("DELETE", _job(job)).close()
 
-    def report_html(self, job: Union[str, Result], controller: Optional[int] = None) -> str:
-        """A report of a job's controller, as a page to print, sign and keep; by default of the first of the ranking."""
+    def report_html(self, job: Union[str, Result, Check], controller: Optional[int] = None) -> str:
+        """A report of a job's controller, as a page to print, sign and keep; by default of the first of the ranking.
+        The report of a check has its work list and a page for each loop."""
         return self._body(_job(job) + "/report.html" + _query({"controller": controller}))
 
     def code(self, job: Union[str, Result], language: str, controller: Optional[int] = None, **options: Any) -> str:
@@ -197,6 +214,44 @@ class Client:
         headers = {"Content-Type": "application/x-ndjson", "Idempotency-Key": str(uuid.uuid4())}
         batch = self._json("POST", "/v1/batches" + _query({"name": name}), lines, headers)
         return self._rows("/v1/batches/" + batch["id"], batch["total"], progress or (lambda done, total: None))
+
+    # Loops in operation.
+
+    def check(self, source: Any, progress: Optional[Progress] = None, name: Optional[str] = None,
+              **rest: Any) -> Check:
+        """What is wrong with loops in operation, why, and what to do first.
+
+        `source` is the path of a CSV of many loops or of one; the path of a folder, whose *.csv files are one loop
+        each; a pandas DataFrame with the columns of many loops, such as FIC101.PV and FIC101.OP; or a list of loops
+        {"tag", "record" or "csv", "kind", ...}. A list becomes one job, anything else a batch with a job for each loop,
+        and `progress(done, total)` is called as they end. A KeyboardInterrupt cancels them.
+        """
+        if isinstance(source, (list, tuple)):
+            loops = [{**loop, "record": record(loop["record"])} if "record" in loop else loop for loop in source]
+            result = self.run({"loops": loops, **_request(name=name, **rest)})
+            return Check(result, job=result.job)
+        headers = {"Idempotency-Key": str(uuid.uuid4())}
+        if not hasattr(source, "to_csv") and os.path.isdir(source):
+            files = sorted(each for each in os.listdir(source) if each.lower().endswith(".csv"))
+            if not files:
+                raise FileNotFoundError("The folder %s has no file that ends in .csv." % source)
+            lines = b"".join(_encoded({"loops": [_loop_of_file(os.path.join(source, each))], **rest}) + b"\n"
+                             for each in files)
+            batch = self._json("POST", "/v1/batches" + _query({"name": name}), lines,
+                               {"Content-Type": "application/x-ndjson", **headers})
+        else:
+            units = rest.pop("units", {})
+            query = {"kind": "check", "name": name, **{"units." + unit: units[unit] for unit in units}, **rest}
+            batch = self._json("POST", "/v1/batches" + _query(query), _file_bytes(source),
+                               {"Content-Type": "text/csv", **headers})
+        for _ in self._rows("/v1/batches/" + batch["id"], batch["total"], progress or (lambda done, total: None)):
+            pass
+        return Check(self.get("/v1/batches/%s/check" % batch["id"]), batch=batch["id"])
+
+    def changes(self, before: Union[str, Check], after: Union[str, Check]) -> Json:
+        """The check `after` with what has changed since the check `before`, loop by loop, as the service answers it.
+        Either is a check of a file, a folder or a DataFrame, or the id of its batch."""
+        return self.get("/v1/batches/%s/check%s" % (quote(_batch(after), safe=""), _query({"before": _batch(before)})))
 
     def _rows(self, path: str, total: int, progress: Progress) -> Iterator[Json]:
         done, lost = 0, 0
@@ -351,8 +406,39 @@ def _text(data: bytes) -> str:
         return data.decode("cp1252", errors="replace")
 
 
-def _job(job: Union[str, Result]) -> str:
-    return "/v1/jobs/" + quote(job.job["id"] if isinstance(job, Result) else job, safe="")
+def _frame_text(frame: Any) -> str:
+    """A pandas DataFrame as CSV; its index is a column too if it has a name or holds dates."""
+    dates = type(frame.index).__name__ == "DatetimeIndex"
+    name = frame.index.name or ("time" if dates else None)
+    return str(frame.to_csv(index=name is not None, index_label=name))
+
+
+def _file_bytes(source: Any) -> bytes:
+    """The bytes of a file, or a DataFrame as CSV."""
+    if hasattr(source, "to_csv"):
+        return _frame_text(source).encode()
+    with open(source, "rb") as file:
+        return file.read()
+
+
+def _loop_of_file(path: str) -> Json:
+    """A loop from a CSV file; the name of the file is its tag."""
+    with open(path, "rb") as file:
+        return {"tag": os.path.splitext(os.path.basename(path))[0], "csv": _text(file.read())}
+
+
+def _job(job: Union[str, Result, Check]) -> str:
+    if isinstance(job, Check) and job.job is None:
+        raise LookupError("This check is a batch, %s; its loops are the jobs of that batch." % job.batch)
+    known = job if isinstance(job, str) else job.job
+    return "/v1/jobs/" + quote(known if isinstance(known, str) else str((known or {})["id"]), safe="")
+
+
+def _batch(check: Union[str, Check]) -> str:
+    batch = check.batch if isinstance(check, Check) else check
+    if batch is None:
+        raise LookupError("This check is no batch; check a file, a folder or a DataFrame to compare it later.")
+    return batch
 
 
 def _query(fields: Mapping[str, Any]) -> str:

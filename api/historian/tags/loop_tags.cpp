@@ -173,6 +173,42 @@ TagName split_tag(std::string_view tag) {
 
 namespace {
 
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+
+/// True for the letters of a controller behind the measured quantity: the IC of FIC, the FC of FFC, the QICA of AQICA.
+bool are_of_controller(std::string_view letters) {
+    constexpr std::string_view kModifiers = "dfryiq";
+    constexpr std::size_t kMaxModifiers = 2, kMaxBehind = 2;
+    for (std::size_t n = 0; n <= kMaxModifiers && n < letters.size(); ++n) {
+        if (letters[n] == 'c' && letters.size() - n - 1 <= kMaxBehind) return true;
+        if (kModifiers.find(letters[n]) == kModifiers.npos) return false;
+    }
+    return false;
+}
+
+}  // namespace
+
+TagKind kind_of_tag(std::string_view tag) {
+    using enum check::LoopKind;
+    static constexpr std::pair<char, TagKind> kKinds[] = {{'f', {flow, "flow"}},
+                                                          {'p', {pressure, "pressure"}},
+                                                          {'l', {level, "level"}},
+                                                          {'t', {temperature, "temperature"}},
+                                                          {'a', {composition, "composition"}}};
+    const std::string text = lower_case(tag);
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        if (!is_letter(text[at])) continue;
+        const std::size_t start = at;
+        while (at < text.size() && is_letter(text[at])) ++at;
+        for (const auto& [letter, kind] : kKinds)
+            if (text[start] == letter && are_of_controller(std::string_view(text).substr(start + 1, at - start - 1)))
+                return kind;
+    }
+    return {};
+}
+
+namespace {
+
 class TagGrouper {
 public:
     explicit TagGrouper(const std::vector<std::string>& tags) : tags_(tags), orders_(tags.size()) {}

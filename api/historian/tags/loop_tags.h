@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "api/csv/columns/heading.h"
+#include "engine/check/loop_check.h"
 
 namespace tunewright::api {
 
@@ -25,6 +26,14 @@ struct TagName {
 /// Splits one tag, with or without a unit behind it: the part is at the end ("FIC101.PV", "FIC-101_PV", "FIC101PV",
 /// "FIC101/PV.CV", "FIC101.PV.Quality") or at the front ("PV_FIC101"), in the words of the headings of a record.
 TagName split_tag(std::string_view tag);
+
+/// What the loop of a tag measures, by the letters of ISA 5.1: "TIC-101", "2111FIC41004", "U7.LC3". The name is that of
+/// the contract, "" for an unknown kind.
+struct TagKind {
+    check::LoopKind kind = check::LoopKind::unknown;
+    std::string_view name;
+};
+TagKind kind_of_tag(std::string_view tag);
 
 /// The tags of one loop, as indices.
 struct LoopTags {

@@ -59,6 +59,7 @@ TEST(RecordedLoops, BecomeARequestEach) {
         ASSERT_TRUE(request.is_object()) << request;
         const Json& loop = request.at("loops").at(0);
         EXPECT_EQ(loop.at("tag"), "TIC-102");
+        EXPECT_EQ(loop.at("kind"), "temperature");
         EXPECT_EQ(loop.at("start"), "2026-05-04T06:00:00");
         EXPECT_EQ(loop.at("time_unit"), "s");
         EXPECT_EQ(loop.at("columns"), Json({{"t", 1}, {"r", 2}, {"y", 3}, {"u", 4}, {"mode", 5}}));

@@ -136,6 +136,23 @@ TEST(LoopTags, AreAmbiguousOnlyInTheirOwnLoop) {
     EXPECT_THAT(two.loops[0].at, ElementsAre(std::nullopt, 3u, 1u, 5u, std::nullopt));
 }
 
+TEST(LoopTags, SayWhatTheLoopMeasures) {
+    for (const auto& [tag, kind] : {std::pair{"FIC101", "flow"},
+                                    {"TIC-101/PID1", "temperature"},
+                                    {"2111FIC41004", "flow"},
+                                    {"U7.LC3", "level"},
+                                    {"PDIC9", "pressure"},
+                                    {"FFC2", "flow"},
+                                    {"AICA7", "composition"},
+                                    {"TI101", ""},
+                                    {"Loop 1", ""},
+                                    {"Tank C", ""},
+                                    {"XFIC", ""},
+                                    {"HIC4", ""},
+                                    {"", ""}})
+        EXPECT_EQ(kind_of_tag(tag).name, kind) << tag;
+}
+
 TEST(LoopTags, NameWhatIsNoLoop) {
     const auto groups = group_tags({"TI5.PV", "FIC1.PV", "FIC1.OP", "HIC9.OP", "XA3.ALARM"});
     EXPECT_THAT(groups.partial, ElementsAre("TI5", "HIC9"));

@@ -1,0 +1,152 @@
+// The report and the table of a check: the work list, its order and its reasons, and a page for each loop.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "api/report/check_words.h"
+#include "api/report/report.h"
+#include "api/report/terminal.h"
+
+namespace tunewright::api {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// A sticking valve disturbs a second loop; a third is healthy. The last of `loops` comes first in the ranking.
+constexpr const char* kLoops = R"([
+  {"tag": "FIC<2>", "quality": {"rows": 400, "duration": 399, "remarks": []}, "service": {"automatic": null,
+      "why_null": {"automatic": "The record has no column of the mode."}},
+   "oscillation": {"found": false, "period": null, "periods": []},
+   "cause": {"verdict": "healthy", "confidence": "likely", "evidence": [{"code": "quiet", "value": 1, "detail": "Quiet."}],
+      "alternatives": ["sluggish"], "size": null},
+   "performance": {"mean_error": 0.1, "harris": null, "why_null": {"harris": "The record is too short."}},
+   "action": {"code": "none", "owner": "nobody", "detail": "Nothing to do."},
+   "trend": {"t": [0, 1], "y": [1, 2], "u": [3, 4]}, "excerpt": {"t": [], "y": [], "u": []}},
+  {"tag": "LIC104", "quality": {"rows": 400, "remarks": [{"code": "gap", "detail": "A gap of 20 s.", "level": "warning"}]},
+   "service": {}, "oscillation": {"found": true, "period": 54.2, "periods": []},
+   "cause": {"verdict": "external", "confidence": "likely", "evidence": [], "alternatives": []},
+   "performance": {"mean_error": 0.2}, "action": {"code": "find-source", "owner": "process", "detail": "Find it."}},
+  {"tag": "FIC101", "quality": {"rows": 400, "remarks": []}, "service": {"automatic": 0.98},
+   "oscillation": {"found": true, "period": 54.04, "regularity": 31.5, "periods": [{"period": 54.04, "period_error": 0.2,
+      "regularity": 31.5, "share": 0.92, "amplitude": 0.62}]},
+   "cause": {"verdict": "stiction", "confidence": "sure", "evidence": [
+      {"code": "regularity", "value": 31.5, "limit": 1, "detail": "It oscillates."},
+      {"code": "valve-explains", "value": 0.8, "detail": "A valve that sticks explains it."}],
+      "alternatives": ["backlash"], "size": 3.068, "jump": 0.5, "period": 54.04},
+   "performance": {"mean_error": 0.39, "harris": {"low": 0.01, "high": 0.34, "delays": [1, 14]}, "idle_index": -0.9},
+   "action": {"code": "repair-valve", "owner": "instruments", "detail": "Have the valve looked at."},
+   "trend": {"t": [0, 1, 2], "y": [1, 2, 1], "r": [1, 1, 1], "u": [3, 4, 3]},
+   "excerpt": {"t": [0, 1, 2], "y": [1, 2, 1], "u": [3, 4, 3]}, "spectrum": {"x": [1, 10, 100], "y": [0, 0.9, 0.1]}}])";
+
+std::string result(const std::string& more = "") {
+    return R"({"units": {"time": "s", "y": "m3/h", "u": "%"}, "version": "0", "request_hash": "h", "partial": false,
+        "clusters": [{"period": 54.1, "loops": [2, 1], "source": 2, "detail": "FIC101 moves first."}],
+        "cascades": [{"master": 1, "slave": 0}],
+        "ranking": [{"loop": 2, "gain": 0.2274, "share": 0.576, "money": null, "effort": 3},
+                    {"loop": 1, "gain": null, "share": null, "money": null, "effort": 3, "after": 2,
+                     "why_null": {"gain": "From outside.", "share": "From outside."}},
+                    {"loop": 0, "gain": 0, "share": 0, "money": null, "effort": 0}], "loops": )" +
+           std::string(kLoops) + more + "}";
+}
+
+std::string report_of(const std::string& text) {
+    auto report = report_html({text, R"({"loops": [], "name": "Unit 7"})"}, "", {});
+    return std::holds_alternative<std::string>(report) ? std::get<std::string>(report)
+                                                       : std::get<Problem>(report).detail;
+}
+
+std::size_t occurrences(std::string_view text, std::string_view part) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + part.size()))
+        ++found;
+    return found;
+}
+
+TEST(CheckReport, HasAPageForThePlantAndOneForEachLoop) {
+    const std::string page = report_of(result());
+    EXPECT_THAT(page, HasSubstr("<h1>Unit 7: loop check</h1>"));
+    EXPECT_THAT(page, HasSubstr("3 loops: 1 sticking valve, 1 disturbed from outside, 1 healthy."));
+    EXPECT_EQ(occurrences(page, "<section class=\"loop\">"), 3u);
+    EXPECT_THAT(page, HasSubstr("<h1>FIC&lt;2&gt;</h1>"));
+    EXPECT_LT(page.find("<h1>FIC101</h1>"), page.find("<h1>LIC104</h1>"));
+    EXPECT_LT(page.find("<h1>LIC104</h1>"), page.find("<h1>FIC&lt;2&gt;</h1>"));
+    EXPECT_THAT(page, HasSubstr("break-before: page"));
+    EXPECT_THAT(page, HasSubstr("<h2>Request</h2>"));
+}
+
+TEST(CheckReport, TheWorkListHasGainsWithUnitsOrTheReason) {
+    const std::string page = report_of(result());
+    EXPECT_THAT(page, HasSubstr("<span data-at=\"/result/ranking/0/gain\">0.2274</span> m3/h"));
+    EXPECT_THAT(page, HasSubstr("<td>known when FIC101 is mended</td>"));
+    EXPECT_THAT(page, HasSubstr("<td>instruments</td><td>work on the plant</td>"));
+    EXPECT_THAT(page, Not(HasSubstr("Money")));
+    const std::string alone = report_of(result(R"(, "ranking": [{"loop": 1, "gain": null, "effort": 3,
+        "why_null": {"gain": "From outside."}, "money": 12}])"));
+    EXPECT_THAT(alone, HasSubstr("<td>From outside.</td>"));
+    EXPECT_THAT(alone, HasSubstr("<span data-at=\"/result/ranking/0/money\">12</span>"));
+    EXPECT_EQ(occurrences(alone, "<section class=\"loop\">"), 3u) << "a loop without a rank is not lost";
+}
+
+TEST(CheckReport, GroupsAndCascadesAreNamedByTheirTags) {
+    const std::string page = report_of(result());
+    EXPECT_THAT(page, HasSubstr("FIC101, LIC104</th><td><span data-at=\"/result/clusters/0/period\">54.1</span>"));
+    EXPECT_THAT(page, HasSubstr("FIC101 moves first."));
+    EXPECT_THAT(page, HasSubstr("LIC104 gives FIC&lt;2&gt; its set point."));
+    EXPECT_THAT(page, HasSubstr("Mend FIC101 first: it disturbs this loop."));
+}
+
+TEST(CheckReport, ALoopHasEvidenceRemarksFiguresAndPictures) {
+    const std::string page = report_of(result());
+    for (const char* part :
+         {"<li>It oscillates.</li><li>A valve that sticks explains it.</li>", "The record does not exclude: Backlash.",
+          "Have the valve looked at. Whose work it is: instruments.", "<li>A gap of 20 s.</li>",
+          "Dead band and stick (%)</th><td><span data-at=\"/result/loops/2/cause/size\">3.068",
+          "data-at=\"/result/loops/2/performance/harris/high\">0.34", "Mean error (m3/h)",
+          "In automatic: none. The record has no column of the mode.", "Harris range: none. The record is too short.",
+          "Measurement against output (PV against OP)", "Power of the error"})
+        EXPECT_THAT(page, HasSubstr(part));
+    EXPECT_EQ(occurrences(page, "Whole record, output"), 2u) << "a loop without a trend has no drawing";
+}
+
+TEST(CheckReport, WhatOnlyResemblesACheckNeverStopsTheService) {
+    for (const char* text :
+         {R"({"loops": [], "ranking": []})", R"({"loops": [1, {"tag": 3}], "ranking": [{"loop": -1}, 5]})",
+          R"({"loops": [{"cause": [], "trend": {"t": 1}}], "ranking": [{"loop": 9}], "clusters": [{"loops": [7]}]})",
+          R"({"loops": [{"cause": {"verdict": "new", "alternatives": [2]}}], "ranking": {}, "clusters": 3})"}) {
+        EXPECT_NO_THROW((void)report_html({text, ""}, "", {})) << text;
+        EXPECT_NO_THROW((void)check_text(text)) << text;
+    }
+    EXPECT_EQ(report_html({result(), ""}, "0", {}).index(), 1u) << "a loop is no controller";
+}
+
+TEST(CheckReport, TheTableIsInTheOrderOfTheRanking) {
+    const std::string shown = check_text(result());
+    EXPECT_THAT(shown, HasSubstr("3 loops: 1 sticking valve, 1 disturbed from outside, 1 healthy.\n\n"
+                                "   loop     cause                   confidence  do first          owner        gain "
+                                "(m3/h)  of the error  period (s)\n"
+                                "1  FIC101   Sticking valve          sure        repair the valve  instruments        "
+                                "0.227          58 %          54\n"
+                                "2  LIC104   Disturbed from outside  likely      find the source   process          "
+                                "        -             -        54.2\n"
+                                "3  FIC<2>   Healthy                 likely      nothing           –                "
+                                "        0           0 %           -\n"));
+    EXPECT_THAT(shown, HasSubstr("Oscillate together: FIC101, LIC104\n  FIC101 moves first.\n"));
+    EXPECT_THAT(shown, HasSubstr("Cascade: LIC104 gives FIC<2> its set point.\n"));
+    EXPECT_THAT(shown, HasSubstr("\nFIC101\n  It oscillates.\n  A valve that sticks explains it.\n  Have the valve"));
+    EXPECT_THAT(shown, Not(HasSubstr("Nothing to do.")));
+    EXPECT_EQ(check_text("no check"), "no check\n");
+}
+
+TEST(CheckReport, NewerCodesAreShownAsTheyAre) {
+    EXPECT_EQ(verdict_title("stiction"), "Sticking valve");
+    EXPECT_EQ(verdict_title("unheard-of"), "unheard-of");
+    EXPECT_EQ(action_title("check-range"), "look at the limit");
+    EXPECT_EQ(effort_title(7), "–");
+}
+
+}  // namespace
+}  // namespace tunewright::api

@@ -111,7 +111,8 @@ TEST(CheckReport, ALoopHasEvidenceRemarksFiguresAndPictures) {
           "In automatic: none. The record has no column of the mode.", "Harris range: none. The record is too short.",
           "Measurement against output (PV against OP)", "Power of the error"})
         EXPECT_THAT(page, HasSubstr(part));
-    EXPECT_EQ(occurrences(page, "<strong>Whole record, output</strong>"), 2u) << "a loop without a trend has no drawing";
+    EXPECT_EQ(occurrences(page, "<strong>Whole record, output</strong>"), 2u)
+        << "a loop without a trend has no drawing";
 }
 
 TEST(CheckReport, WhatOnlyResemblesACheckNeverStopsTheService) {

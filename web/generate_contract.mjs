@@ -12,7 +12,7 @@ const SENT = ["CheckRequest", "IdentifyRequest", "PlantQuestion", "RangeRequest"
 
 /** Types of answers; the types to which both refer are included. */
 const ANSWERED = [
-  "Batch", "CheckResult", "ControllerProduct", "ControllerRecordAnswer", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "Health",
+  "Batch", "BatchCheck", "CheckResult", "ControllerProduct", "ControllerRecordAnswer", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "Health",
   "IdentifyAnswer", "Job", "JobList", "MethodDescription", "PlantAnswer", "PreviewAnswer", "Problem", "RangeExample", "RangeResult",
   "RelayAnswer", "ScheduleSettingsAnswer", "SettingsAnswer", "TuningResult",
 ];

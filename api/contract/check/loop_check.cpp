@@ -335,26 +335,50 @@ Codec<ActionCode> check_action() {
                                {"test", test}});
 }
 
+namespace {
+
+/// The members of a loop's answer, but for those that are drawn of a single loop.
+void add_findings(Description<CheckedLoop>& d) {
+    using L = CheckedLoop;
+    d.field("tag", &L::tag, words(), "Its name.")
+        .field("quality", &L::quality, answer(quality_contract()), "The record; it comes before every diagnosis.")
+        .field("service", &L::service, answer(service_contract()), "For what share of the time it was controlled.")
+        .field("oscillation", &L::oscillation, answer(oscillation_contract()), "Whether the error oscillates.")
+        .field("cause", &L::cause, answer(cause_contract()), "Why the loop is as it is.")
+        .field("performance", &L::performance, answer(loop_performance_contract()), "How much error and output move.")
+        .field("action", &L::action, answer(action_contract()), "What to do first.")
+        .field("cure", &L::cure, only_answered(maybe(answer(cure_contract()))),
+               "New settings, or the test that is missing, where tuning is the cause and settings were asked for.")
+        .field("weight", &L::weight, only_answered(maybe(number())), "As in the request.")
+        .field("trend", &L::trend, answer(trend_contract()), "The whole record, as extremes of even stretches.");
+}
+
+}  // namespace
+
 const Description<CheckedLoop>& loop_check_contract() {
     static const auto description = [] {
         using L = CheckedLoop;
         Description<L> d("LoopCheck", "What a loop's record says about it.");
-        d.field("tag", &L::tag, words(), "Its name.")
-            .field("quality", &L::quality, answer(quality_contract()), "The record; it comes before every diagnosis.")
-            .field("service", &L::service, answer(service_contract()), "For what share of the time it was controlled.")
-            .field("oscillation", &L::oscillation, answer(oscillation_contract()), "Whether the error oscillates.")
-            .field("cause", &L::cause, answer(cause_contract()), "Why the loop is as it is.")
-            .field("performance", &L::performance, answer(loop_performance_contract()),
-                   "How much error and output move.")
-            .field("action", &L::action, answer(action_contract()), "What to do first.")
-            .field("cure", &L::cure, only_answered(maybe(answer(cure_contract()))),
-                   "New settings, or the test that is missing, where tuning is the cause and settings were asked for.")
-            .field("weight", &L::weight, only_answered(maybe(number())), "As in the request.")
-            .field("trend", &L::trend, answer(trend_contract()), "The whole record, as extremes of even stretches.")
-            .field("excerpt", &L::excerpt, answer(trend_contract()), "Its last periods.")
+        add_findings(d);
+        d.field("excerpt", &L::excerpt, answer(trend_contract()), "Its last periods.")
             .field("spectrum", &L::spectrum, answer(curve_contract()), "Share of the error's power over the period.")
             .field("autocorrelation", &L::autocorrelation, answer(curve_contract()), "Of the error, over the lag.")
             .field("shape", &L::shape, object(shape_contract()), "For the judgement of many loops together.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<CheckedLoop>& loop_of_batch_contract() {
+    static const auto description = [] {
+        Description<CheckedLoop> d("LoopOfBatch", "What a loop's record says about it, in the judgement of a batch.");
+        add_findings(d);
+        d.field(
+             "index", {}, [](const CheckedLoop&, Writer& out) { out.null(); }, integer(0, 1 << 30).schema,
+             "Its entry in the batch, from 0.")
+            .field(
+                "job", {}, [](const CheckedLoop&, Writer& out) { out.null(); }, words().schema,
+                "The job of the entry, whose result has the drawn parts too.");
         return d;
     }();
     return description;

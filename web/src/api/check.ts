@@ -1,7 +1,7 @@
 // Loops in operation: a check as a job, started, followed and stopped.
 import { call, sentenceOf, waitAfter } from "./client.ts";
 import { untilEnd } from "./events.ts";
-import type { Batch, CheckContent, CheckJob, CheckLoop, CheckRequest, CheckResult, LoopCure, Progress, Units } from "./types.ts";
+import type { Batch, BatchCheck, CheckContent, CheckJob, CheckLoop, CheckRequest, CheckResult, JobList, LoopCure, Progress, Units } from "./types.ts";
 import { isFinal } from "./types.ts";
 
 /** The same criterion as the service's for requests of POST /v1/jobs. */
@@ -20,9 +20,13 @@ export async function postCheckBatch(body: Blob, type: "text/csv" | "application
   return (await call("POST", `v1/batches?${query}`, body, { "Content-Type": type })).data as Batch;
 }
 
-/** What the loops of a batch say together, without their curves. */
-export const checkOfBatch = async (id: string): Promise<CheckContent> =>
-  (await call("GET", `v1/batches/${encodeURIComponent(id)}/check`)).data as CheckContent;
+/** What the loops of a batch say together; their units are those of its jobs. */
+export async function checkOfBatch(id: string): Promise<CheckContent> {
+  const batch = encodeURIComponent(id);
+  const [check, list] = await Promise.all([call("GET", `v1/batches/${batch}/check`), call("GET", `v1/jobs?batch=${batch}&limit=1`)]);
+  const units = (list.data as JobList).jobs[0]?.outline?.units;
+  return { ...(check.data as BatchCheck), ...(units ? { units } : {}) };
+}
 
 /** New settings for a loop whose cause is its tuning, or the test that is missing; null if tuning is not the cause. */
 export async function cureOf(loop: CheckLoop, units: Units | undefined, signal: AbortSignal): Promise<LoopCure | null> {

@@ -1200,6 +1200,7 @@ export type components = {
       idle_index: number | null;
       variability: number;
       mean_error: number;
+      independent: number;
       following: number | null;
       travel: number;
       reversals: number;
@@ -1281,6 +1282,28 @@ export type components = {
       money: number | null;
       effort: number;
       after?: number;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    BatchCheck: {
+      loops: components["schemas"]["LoopCheck"][];
+      clusters: components["schemas"]["LoopCluster"][];
+      cascades: components["schemas"]["LoopCascade"][];
+      ranking: components["schemas"]["LoopRank"][];
+      changes?: {
+        loop: number;
+        change: components["schemas"]["LoopChange"];
+      }[];
+      failed: number;
+      complete: boolean;
+    };
+    LoopChange: {
+      before: "healthy" | "stiction" | "backlash" | "tight" | "sluggish" | "external" | "saturation" | "quantised" | "manual" | "frozen" | "undetermined" | "insufficient-data";
+      now: "healthy" | "stiction" | "backlash" | "tight" | "sluggish" | "external" | "saturation" | "quantised" | "manual" | "frozen" | "undetermined" | "insufficient-data";
+      variability_ratio: number | null;
+      likelihood: number | null;
+      significant: boolean;
       why_null?: {
         [key: string]: string;
       };
@@ -1857,6 +1880,8 @@ export type LoopShape = components['schemas']['LoopShape'];
 export type LoopCluster = components['schemas']['LoopCluster'];
 export type LoopCascade = components['schemas']['LoopCascade'];
 export type LoopRank = components['schemas']['LoopRank'];
+export type BatchCheck = components['schemas']['BatchCheck'];
+export type LoopChange = components['schemas']['LoopChange'];
 export type RangeRequest = components['schemas']['RangeRequest'];
 export type Scheduling = components['schemas']['Scheduling'];
 export type GivenRangePoint = components['schemas']['GivenRangePoint'];

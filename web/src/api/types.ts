@@ -5,6 +5,7 @@ import type { Schema } from "./method.ts";
 
 export type {
   Batch,
+  BatchCheck,
   CheckCurve,
   CheckLoop,
   CheckRequest,
@@ -125,11 +126,11 @@ export type Candidate = Omit<Contract.Candidate, "criterion">;
 export type Entry = Contract.Entry & { method: string };
 /** A check of loops in operation. */
 export type CheckJob = Omit<Contract.Job, "request" | "result"> & { request?: Contract.CheckRequest; result?: Contract.CheckResult };
-type Drawn = "trend" | "excerpt" | "spectrum" | "autocorrelation";
-/** A loop in the list of a check: that of a batch has no curves. */
-export type ListedLoop = Omit<Contract.LoopCheck, Drawn> & Partial<Pick<Contract.LoopCheck, Drawn>>;
-/** What a check found: of a job whole, of a batch without curves. */
-export type CheckContent = Pick<Contract.CheckResult, "clusters" | "cascades" | "ranking" | "units"> & { loops: ListedLoop[]; partial?: boolean };
+type OwnParts = "excerpt" | "spectrum" | "autocorrelation" | "shape";
+/** A loop in the list of a check: in that of a batch it has no curves of its own, but its job. */
+export type ListedLoop = Omit<Contract.LoopCheck, OwnParts> & Partial<Pick<Contract.LoopCheck, OwnParts>> & { job?: string };
+/** What a check found: of a job with all curves, of a batch without them. */
+export type CheckContent = Pick<Contract.CheckResult, "clusters" | "cascades" | "ranking" | "units"> & { loops: ListedLoop[]; partial?: boolean; failed?: number };
 /** The result of a job about one loop or a range, or a combination of the answers to a slider. */
 export type Result = Partial<Omit<Contract.TuningResult, "controllers">> & { controllers: Entry[]; range?: Contract.Range };
 export type Job = Omit<Contract.Job, "request" | "result"> & { request?: TuningRequest; result?: Result };

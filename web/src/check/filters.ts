@@ -2,7 +2,7 @@
 import { h } from "../dom.ts";
 import type { ListView } from "../routes.ts";
 import { ownerWords, verdictOrder, verdictWords } from "../words/check.ts";
-import { causeMark } from "./cause_mark.ts";
+import { causeMark } from "./loop_name.ts";
 import { counts } from "./columns.ts";
 import type { WorkRow } from "./columns.ts";
 import type { Confidence } from "../words/check.ts";

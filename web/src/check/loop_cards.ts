@@ -8,10 +8,9 @@ import type { LoopFigure, LoopFigures } from "../words/check.ts";
 import { figureUnit } from "../words/figure_units.ts";
 import { DASH, formatNumber, formatShare, withMinus, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
-import { causeMark } from "./cause_mark.ts";
+import { causeMark, listed, loopLink } from "./loop_name.ts";
+import type { LoopAddress } from "./loop_name.ts";
 import type { WorkRow } from "./columns.ts";
-import { loopLink } from "./loop_link.ts";
-import type { LoopAddress } from "./loop_link.ts";
 import { clusterOf } from "./periods.ts";
 
 export interface LoopShown {
@@ -29,10 +28,6 @@ const card = (title: string, look: string, ...content: Child[]): HTMLElement => 
 function linkTo({ content, address }: LoopShown, place: number): HTMLElement {
   return loopLink(place, content.loops[place]!.tag, address);
 }
-
-/** "A, B and C", as links. */
-const listed = (links: HTMLElement[]): Child[] =>
-  links.flatMap((link, index): Child[] => [index === 0 ? "" : index === links.length - 1 ? " and " : ", ", link]);
 
 /** What the loop has to do with others. */
 function neighbours(shown: LoopShown): HTMLElement[] {

@@ -81,7 +81,10 @@ export function loopView(announce: (sentence: string) => void): LoopView {
       cure.dispose();
       cure.element.hidden = true;
     },
-    complete(shown, { loop, sent, units, steps }) {
+    complete(shown, { loop: own, sent, units, steps }) {
+      // Its neighbours may have changed its cause.
+      const { cause, action } = shown.row.loop;
+      const loop = { ...own, cause, action };
       cards.replaceChildren(causeCard(shown), actionCard(shown, steps));
       draw(loop, shown);
       cure.show(loop, sent, units);

@@ -6,9 +6,9 @@ import type { Child, TreeNode } from "../dom.ts";
 import { explained } from "../reach/explanation.ts";
 import { timeWords } from "../words/check.ts";
 import { counted } from "../words/range.ts";
-import { loopLink } from "./loop_link.ts";
-import type { LoopAddress } from "./loop_link.ts";
-import { alongAxis, periodGroups, periodRange, periodTicks, ridge } from "./periods.ts";
+import { loopLink } from "./loop_name.ts";
+import type { LoopAddress } from "./loop_name.ts";
+import { alongAxis, periodGroups, periodOf, periodRange, periodTicks, ridge } from "./periods.ts";
 import type { PeriodGroup } from "./periods.ts";
 
 /** Of a row's drawing, which is stretched to the width of its cell. */
@@ -30,13 +30,13 @@ function drawing(children: TreeNode[]): SVGElement {
 }
 
 function loopDrawing(content: CheckContent, loop: number, range: Range, group: { period: number; colour: string } | null): SVGElement {
-  const { shape } = content.loops[loop]!;
-  const curve = ridge(shape, range).map(([at, power]) => `L${Math.round(WIDTH * at)} ${(HEIGHT - 1 - (HEIGHT - 4) * power).toFixed(1)}`);
+  const curve = ridge(content.loops[loop]!.shape, range).map(([at, power]) => `L${Math.round(WIDTH * at)} ${(HEIGHT - 1 - (HEIGHT - 4) * power).toFixed(1)}`);
   const colour = group?.colour ?? "var(--muted)";
-  const x = place(shape.period, range);
+  const x = place(periodOf(content, loop), range);
   return drawing([
     ...periodTicks(range, TICKS).map(([tick]) => upright(place(tick, range), { stroke: "var(--grid)" })),
-    node("path", { d: `M0 ${HEIGHT - 1}${curve.join("")}L${WIDTH} ${HEIGHT - 1}`, fill: colour, "fill-opacity": 0.18, stroke: colour, "vector-effect": "non-scaling-stroke" }),
+    // A batch has no spectra.
+    ...(curve.length > 0 ? [node("path", { d: `M0 ${HEIGHT - 1}${curve.join("")}L${WIDTH} ${HEIGHT - 1}`, fill: colour, "fill-opacity": 0.18, stroke: colour, "vector-effect": "non-scaling-stroke" })] : []),
     ...(group ? [upright(place(group.period, range), { stroke: colour, "stroke-width": 2 })] : []),
     node("path", { d: `M${x} ${HEIGHT / 2}h0`, stroke: colour, "stroke-width": 10, "stroke-linecap": "round", "vector-effect": "non-scaling-stroke" }),
   ]);
@@ -62,7 +62,7 @@ const title = ({ cluster, places }: PeriodGroup): Child[] =>
 
 /** A table, so that it is read without the drawing too; null if no loop oscillates. */
 export function periodMap(content: CheckContent, address: LoopAddress): HTMLElement | null {
-  const range = periodRange(content.loops);
+  const range = periodRange(content);
   if (!range) return null;
   const bodies = periodGroups(content).map((group, index) => {
     const { cluster } = group;
@@ -77,7 +77,7 @@ export function periodMap(content: CheckContent, address: LoopAddress): HTMLElem
           loopLink(loop, content.loops[loop]!.tag, address),
           cluster?.source === loop ? h("span", { class: "source" }, "source") : "",
         ),
-        h("td", {}, timeWords(content.loops[loop]!.shape.period)),
+        h("td", {}, timeWords(periodOf(content, loop))),
         h("td", { class: "ridge" }, loopDrawing(content, loop, range, joined)),
       ),
     );

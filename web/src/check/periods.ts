@@ -1,5 +1,12 @@
 // The plant's map of periods as data: loops that oscillate together, loops that oscillate alone, and the axis.
 import type { CheckContent, ListedLoop, LoopCluster } from "../api/types.ts";
+import { secondsPer } from "../words/check.ts";
+
+/** Of a loop's strongest oscillation, in s; 0: it has none. */
+export const periodOf = ({ loops, units }: CheckContent, place: number): number => {
+  const { shape, oscillation } = loops[place]!;
+  return shape?.period ?? secondsPer(units?.time) * (oscillation.period ?? 0);
+};
 
 export interface PeriodGroup {
   /** Its place among the answer's clusters; null: loops that oscillate alone. */
@@ -9,12 +16,13 @@ export interface PeriodGroup {
 }
 
 /** Clusters in the order of the answer, then the other loops that oscillate. */
-export function periodGroups({ loops, clusters }: CheckContent): PeriodGroup[] {
+export function periodGroups(content: CheckContent): PeriodGroup[] {
+  const { loops, clusters } = content;
   const together = new Set(clusters.flatMap((cluster) => cluster.loops));
   const alone = loops
     .map((_, place) => place)
-    .filter((place) => !together.has(place) && loops[place]!.shape.period > 0)
-    .sort((a, b) => loops[a]!.shape.period - loops[b]!.shape.period);
+    .filter((place) => !together.has(place) && periodOf(content, place) > 0)
+    .sort((a, b) => periodOf(content, a) - periodOf(content, b));
   return [
     ...clusters.map((cluster) => ({ cluster, places: cluster.loops })),
     ...(alone.length > 0 ? [{ cluster: null, places: alone }] : []),
@@ -24,8 +32,8 @@ export function periodGroups({ loops, clusters }: CheckContent): PeriodGroup[] {
 const MARGIN = 1.8;
 
 /** From the shortest to the longest period, with a margin, in s; null if nothing oscillates. */
-export function periodRange(loops: readonly ListedLoop[]): [number, number] | null {
-  const periods = loops.map(({ shape }) => shape.period).filter((period) => period > 0);
+export function periodRange(content: CheckContent): [number, number] | null {
+  const periods = content.loops.map((_, place) => periodOf(content, place)).filter((period) => period > 0);
   return periods.length === 0 ? null : [Math.min(...periods) / MARGIN, Math.max(...periods) * MARGIN];
 }
 
@@ -49,8 +57,9 @@ export const alongAxis = (period: number, [from, to]: readonly [number, number])
 /** As in the contract: the bands of a shape's spectrum are even in the logarithm of the period, in s. */
 const BANDS = [1, 100_000] as const;
 
-/** A loop's spectrum along the axis: place from 0 to 1, and power relative to its largest. */
-export function ridge({ spectrum }: ListedLoop["shape"], range: readonly [number, number]): [at: number, power: number][] {
+/** A loop's spectrum along the axis: place from 0 to 1, and power relative to its largest; empty if it is not known. */
+export function ridge(shape: ListedLoop["shape"], range: readonly [number, number]): [at: number, power: number][] {
+  const { spectrum } = shape ?? { spectrum: [] };
   const highest = Math.max(...spectrum, 0);
   if (highest <= 0) return [];
   return spectrum

@@ -1,12 +1,16 @@
-// What checked the loops: a job with all of them, or a batch with a job for each. Both are followed until they have ended.
-import { checkOfBatch, followCheck, getCheck, isCheckRequest } from "../api/check.ts";
+// What checks the loops: a job with all of them, or a batch with a job for each. They are sent as one of the two, and both
+// are followed until they have ended.
+import { checkOfBatch, followCheck, getCheck, isCheckRequest, postCheck, postCheckBatch } from "../api/check.ts";
 import { sentenceOf, waitAfter } from "../api/client.ts";
-import { cancelBatch, getBatch, hasEnded, jobsOfBatch } from "../api/job_lists.ts";
+import { cancelBatch, getBatch, hasEnded } from "../api/job_lists.ts";
 import { cancelJob } from "../api/jobs.ts";
+import { maxBodyBytes } from "../api/records.ts";
 import type { Batch, CheckContent, CheckJob, CheckLoop, CheckRequest, LoopCheck, Units } from "../api/types.ts";
 import { isFinal } from "../api/types.ts";
 import type { CheckedBy } from "../routes.ts";
 import { counted } from "../words/range.ts";
+import { linesOf } from "./request.ts";
+import type { CheckOrder } from "./request.ts";
 
 /** A check as it stands. */
 export interface CheckState {
@@ -47,6 +51,18 @@ export interface CheckFollower {
 
 export const checkSource = ({ kind, id }: CheckedBy, follower: CheckFollower): CheckSource =>
   kind === "batch" ? batchSource(id, follower) : jobSource(id, follower);
+
+const batchOf = ({ id }: Pick<Batch, "id">): CheckedBy => ({ kind: "batch", id });
+
+/** As one job; as a batch if that is too long for one request, or if the file has many loops. */
+export async function sendOrder(order: CheckOrder): Promise<CheckedBy> {
+  if (order.kind === "file") return batchOf(await postCheckBatch(new Blob([order.csv]), "text/csv", order.options));
+  const { request } = order;
+  const body = new Blob([JSON.stringify(request)], { type: "application/json" });
+  if (body.size <= (await maxBodyBytes())) return { kind: "job", id: (await postCheck(body)).id };
+  const options: Record<string, string> = request.name ? { name: request.name } : {};
+  return batchOf(await postCheckBatch(new Blob(linesOf(request)), "application/x-ndjson", options));
+}
 
 /** The reason why a job that has ended has no work list. */
 function whyNone({ request, error }: CheckJob): string {
@@ -91,13 +107,11 @@ function jobSource(id: string, { onState, onTrouble }: CheckFollower): CheckSour
   };
 }
 
-/** As many as a batch may have. */
-const MOST_LOOPS = 100_000;
 const LOOK_AGAIN_MS = 1000;
 
 function batchSource(id: string, { onState, onTrouble }: CheckFollower): CheckSource {
   let stopped = false;
-  let jobs: Promise<Map<number, string>> | null = null;
+  let found: CheckContent | null = null;
 
   function stateOfBatch(batch: Batch, content: CheckContent | null): CheckState {
     const { succeeded, failed, cancelled } = batch.counts;
@@ -110,7 +124,7 @@ function batchSource(id: string, { onState, onTrouble }: CheckFollower): CheckSo
       message: batch.status === "receiving" ? `${counted(batch.total, "loop")} read so far.` : `${done} of ${counted(batch.total, "loop")} checked.`,
       content,
       request: null,
-      failure: hasEnded(batch) && !content ? "The batch has no loop that was checked." : "",
+      failure: "",
     };
   }
 
@@ -118,25 +132,16 @@ function batchSource(id: string, { onState, onTrouble }: CheckFollower): CheckSo
   async function look(): Promise<number | null> {
     try {
       const batch = await getBatch(id);
-      const content = hasEnded(batch) ? await checkOfBatch(id) : null;
+      if (hasEnded(batch)) found = { ...(await checkOfBatch(id)), partial: batch.counts.cancelled > 0 };
       if (stopped) return null;
       onTrouble("");
-      onState(stateOfBatch(batch, content && content.loops.length > 0 ? { ...content, partial: batch.counts.cancelled > 0 } : null));
+      onState(stateOfBatch(batch, found));
       return hasEnded(batch) ? null : LOOK_AGAIN_MS;
     } catch (error) {
       if (!stopped) onTrouble(sentenceOf(error));
       return waitAfter(error);
     }
   }
-
-  /** Jobs by the places of their loops; listed once. */
-  const jobOf = async (place: number): Promise<string | undefined> => {
-    jobs ??= jobsOfBatch(id, MOST_LOOPS).then((list) => new Map(list.map((job) => [job.index ?? 0, job.id])));
-    return (await jobs.catch((error: unknown) => {
-      jobs = null;
-      throw error;
-    })).get(place);
-  };
 
   void (async () => {
     for (let wait = await look(); wait !== null && !stopped; wait = await look())
@@ -148,9 +153,7 @@ function batchSource(id: string, { onState, onTrouble }: CheckFollower): CheckSo
     },
     cancel: async () => void (await cancelBatch(id)),
     async whole(place) {
-      const job = await jobOf(place);
-      if (job === undefined) throw new Error("The job of this loop was deleted.");
-      const { request, result } = await getCheck(job);
+      const { request, result } = await getCheck(found!.loops[place]!.job!);
       const loop = result?.loops[0];
       if (!loop) throw new Error("The job of this loop has no result.");
       return { loop, sent: request?.loops[0] ?? null, units: request?.units };

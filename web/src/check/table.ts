@@ -8,10 +8,9 @@ import { explained } from "../reach/explanation.ts";
 import type { ListView } from "../routes.ts";
 import { orderOf } from "../words/comparison.ts";
 import type { ExplainedName } from "../words/explained.ts";
-import { causeMark } from "./cause_mark.ts";
+import { causeMark, loopLink } from "./loop_name.ts";
+import type { LoopAddress } from "./loop_name.ts";
 import { mendedBefore } from "./columns.ts";
-import { loopLink } from "./loop_link.ts";
-import type { LoopAddress } from "./loop_link.ts";
 import type { WorkColumn, WorkRow } from "./columns.ts";
 
 export interface WorkTable {
@@ -35,8 +34,6 @@ export function workTable(onSort: (column: string) => void): WorkTable {
   let columns: readonly WorkColumn[] = [];
   let address: LoopAddress = () => "";
   let shown: readonly WorkRow[] = [];
-  /** The answer has the loops' curves. */
-  let drawn = true;
   let footnotes: string[] = [];
   const head = h("tr", {});
   const body = h("tbody", {});
@@ -109,7 +106,7 @@ export function workTable(onSort: (column: string) => void): WorkTable {
       {},
       h("td", { class: "pin rank" }, row.rank),
       h("th", { scope: "row", class: "pin loop" }, loopLink(row.place, row.loop.tag, address)),
-      h("td", { class: "spark", hidden: !drawn }, waveSpark(row.loop)),
+      h("td", { class: "spark" }, waveSpark(row.loop)),
       columns.map((column) => cell(row, column)),
     );
   }
@@ -118,13 +115,12 @@ export function workTable(onSort: (column: string) => void): WorkTable {
     element: h("div", {}, scroller, cue, why),
     build(rows, given, addressOf) {
       [all, columns, address] = [rows, given, addressOf];
-      drawn = rows.some(({ loop }) => loop.excerpt);
       elements.clear();
       footnotes = [...new Set(rows.flatMap((row) => columns.map((column) => column.figure(row).why)))].filter(Boolean);
       head.replaceChildren(
         heading("rank", "#", "pin rank", null),
         heading("loop", "Loop", "pin loop", null),
-        h("th", { scope: "col", class: "spark", hidden: !drawn }, "Last periods"),
+        h("th", { scope: "col", class: "spark" }, rows.some(({ loop }) => loop.excerpt) ? "Last periods" : "Trend"),
         ...columns.map(({ id, label, words, about }) => heading(id, label, words ? "words" : "", about)),
       );
       why.hidden = footnotes.length === 0;
@@ -162,10 +158,10 @@ const mean = (values: readonly (number | null)[]): number | null => {
   return known.length === 0 ? null : known.reduce((sum, value) => sum + value, 0) / known.length;
 };
 
-/** The measurement over the last periods, where its wave is seen, with a line at the mean of the set point or else of
+/** The measurement over the last periods, where its wave is seen, or else over the whole record, with a line at the mean of the set point or else of
     itself. */
-function waveSpark({ excerpt }: ListedLoop): SVGElement | null {
-  const { t, y, r } = excerpt ?? { t: [], y: [] };
+function waveSpark({ excerpt, trend }: ListedLoop): SVGElement | null {
+  const { t, y, r } = excerpt ?? trend;
   const level = mean(r ?? y);
   if (t.length < 2 || level === null) return null;
   return svgElement(

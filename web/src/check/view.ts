@@ -19,8 +19,7 @@ import type { LoopShown } from "./loop_cards.ts";
 import { loopView } from "./loop_view.ts";
 import { checkProgress } from "./progress_bar.ts";
 import { recordOf } from "./request.ts";
-import { sendOrder } from "./sending.ts";
-import { checkSource } from "./source.ts";
+import { checkSource, sendOrder } from "./source.ts";
 import type { CheckSource, CheckState, WholeLoop } from "./source.ts";
 import { workList } from "./work_list.ts";
 
@@ -39,6 +38,14 @@ export interface CheckEvents {
 
 const TITLE = "Check loops in operation";
 const EMPTY: CheckRoute = { screen: "check", of: null, from: null, loop: null, list: WHOLE_LIST };
+
+/** How many loops there are, and which are missing. */
+function aboutWords({ partial, failed }: CheckContent, size: string): string {
+  const stopped = partial ? "The check was stopped early: loops that it did not reach have no result." : "";
+  const missing = failed ? `${counted(failed, "record")} of the batch could not be checked.` : "";
+  const rest = [stopped, missing].filter(Boolean).join(" ");
+  return size && rest ? `${size}. ${rest}` : size + rest;
+}
 
 export function checkView(announce: (sentence: string) => void, events: CheckEvents): CheckView {
   const errors = new FormErrors();
@@ -178,8 +185,7 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
     const name = state?.name || (found ? `Check of ${size}` : "");
     const text = route.of === null ? TITLE : tag || name || TITLE;
     if (heading.textContent !== text) heading.textContent = text;
-    const partial = found?.partial ? " The check was stopped early: loops that it did not reach have no result." : "";
-    about.textContent = route.of === null || !found ? "" : tag ? name : `${state?.name ? size : ""}${partial}`.trim();
+    about.textContent = route.of === null || !found ? "" : tag ? name : aboutWords(found, state?.name ? size : "");
     about.hidden = about.textContent === "";
     tools.hidden = route.of === null || route.loop !== null;
     save.hidden = !found;

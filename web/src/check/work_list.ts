@@ -8,8 +8,8 @@ import type { UnitNames } from "../words/numbers.ts";
 import { nameColumn, shownRows, workColumns, workCsv, workRows } from "./columns.ts";
 import type { WorkColumn, WorkRow } from "./columns.ts";
 import { countsSentence, workFilters } from "./filters.ts";
-import { followAddress, loopLink } from "./loop_link.ts";
-import type { LoopAddress } from "./loop_link.ts";
+import { followAddress, loopLink } from "./loop_name.ts";
+import type { LoopAddress } from "./loop_name.ts";
 import { periodMap } from "./period_map.ts";
 import { workTable } from "./table.ts";
 

@@ -84,6 +84,11 @@ export const toneOf = ({ verdict, confidence }: Pick<LoopCheck["cause"], "verdic
 /** A share that is an estimate, in percent without decimals. */
 export const estimate = (share: number): string => String(Math.round(100 * share));
 
+const SECONDS: Readonly<Record<string, number>> = { ms: 0.001, s: 1, min: 60, h: 3600, d: 86_400 };
+
+/** In a unit of time of a request. */
+export const secondsPer = (unit: string | undefined): number => SECONDS[unit ?? "s"] ?? 1;
+
 const SCALES = [
   ["h", 3600],
   ["min", 60],

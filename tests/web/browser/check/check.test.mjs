@@ -181,3 +181,28 @@ test("faults stand at their fields, files that are not UTF-8 are read as the ser
     assert.deepEqual([loop.range.op, loop.columns], [[5, 95], { y: "PV [°C]" }]);
   });
 });
+
+test("a file with the columns of many loops becomes a batch, and its work list has them all", async () => {
+  const tags = ["FIC-1", "TIC-2", "PIC-3"];
+  const lines = [`time [s],${tags.map((tag) => `${tag}.SP,${tag}.PV,${tag}.OP`).join(",")}`];
+  for (let row = 0; row < 900; row += 1)
+    lines.push([2 * row, ...tags.flatMap((_, index) => [50, (50 + 2 * Math.sin(row / (5 + 6 * index)) + 0.01 * ((row * 7919) % 11)).toFixed(3), (40 + 3 * Math.cos(row / (5 + 6 * index))).toFixed(2)])].join(","));
+  await withPage("#/check", {}, async (page) => {
+    await choose(page, [file("Unit 7.csv", lines.join("\n"))]);
+    await page.getByRole("button", { name: "Check all loops of the file" }).click();
+    await rows(page).nth(2).waitFor();
+    const id = /#\/batches\/([^/?]+)\/check/.exec(page.url())[1];
+    const answer = await (await fetch(`${tests.service.base}/v1/batches/${id}/check`)).json();
+    assert.deepEqual(await rows(page).locator("th a").allInnerTexts(), answer.ranking.map(({ loop }) => answer.loops[loop].tag));
+    assert.deepEqual((await rows(page).locator("th a").allInnerTexts()).sort(), [...tags].sort());
+    assert.equal(await page.title(), "Unit 7 · Check · Tunewright");
+    await page.getByRole("link", { name: "TIC-2", exact: true }).first().click();
+    await tracesShown(page, "Whole record", 3);
+    await page.getByRole("button", { name: "Identify from this record" }).waitFor();
+    assert.deepEqual(await accessibilityViolations(page), []);
+    await page.goto(`${tests.service.base}/#/batches/${id}`);
+    await page.getByText("3 loops: 3 checked").waitFor();
+    await page.getByRole("link", { name: "Work list of the loops" }).click();
+    await rows(page).nth(2).waitFor();
+  });
+});

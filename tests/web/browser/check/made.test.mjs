@@ -26,15 +26,15 @@ async function withJob(address, job, options, body, routes = {}) {
 /** A page on which the service has this batch: its check, and a job for each of its loops. */
 async function withBatch(address, ended, body, routes = {}) {
   const answer = madeAnswer();
-  const bare = answer.loops.map(({ trend: _t, excerpt: _e, spectrum: _s, autocorrelation: _a, ...loop }) => loop);
+  const bare = answer.loops.map(({ excerpt: _e, spectrum: _s, autocorrelation: _a, shape: _p, ...loop }, index) => ({ ...loop, index, job: `job${index}` }));
   const counts = (done) => ({ queued: 8 - done, running: 0, succeeded: done, failed: 0, cancelled: 0 });
   const state = () => ({ id: ID, name: "Unit 22", status: ended() ? "ended" : "running", total: 8, counts: counts(ended() ? 8 : 3), progress: { fraction: 0 }, cancel_requested: false, created_at: "2026-05-04T06:00:00Z", finished_at: null, links: {} });
-  const listed = answer.loops.map((loop, index) => ({ id: `job${index}`, name: loop.tag, index, status: "succeeded", created_at: "2026-05-04T06:00:00Z" }));
+  const listed = [{ id: "job7", name: "TIC-108", index: 7, status: "succeeded", created_at: "2026-05-04T06:00:00Z", outline: { method: "check", units: { time: "min" } } }];
   const opened = await openPage(tests.browser);
   const { page } = opened;
   await page.route(`**/v1/batches/${ID}`, (route) => route.fulfill(json(state())));
-  await page.route(`**/v1/batches/${ID}/check`, (route) => route.fulfill(json({ ...answer, loops: bare, complete: true })));
-  await page.route(`**/v1/jobs?batch=${ID}*`, (route) => route.fulfill(json({ jobs: [...listed].reverse(), next: null })));
+  await page.route(`**/v1/batches/${ID}/check`, (route) => route.fulfill(json({ ...answer, loops: bare, failed: 2, complete: true })));
+  await page.route(`**/v1/jobs?batch=${ID}*`, (route) => route.fulfill(json({ jobs: listed, next: null })));
   await page.route(/\/v1\/jobs\/job\d$/, (route) => {
     const loop = answer.loops[Number(route.request().url().slice(-1))];
     return route.fulfill(json(madeJob("x", { ...answer, loops: [loop], clusters: [], cascades: [], ranking: [] })));
@@ -197,7 +197,7 @@ test("a check that runs shows its progress, and what it has when it is cancelled
     assert.deepEqual(await accessibilityViolations(page), []);
     await page.getByRole("button", { name: "Cancel" }).click();
     await rows(page).first().waitFor();
-    await page.getByText("The check was stopped early: loops that it did not reach have no result.").waitFor();
+    await page.getByText("8 loops. The check was stopped early: loops that it did not reach have no result.").waitFor();
   }, routes);
 });
 
@@ -225,14 +225,17 @@ test("a long list comes in parts as it is scrolled, and each loop is found", asy
   });
 });
 
-test("a batch is followed until it has ended; its list has no curves, the pages of its loops have them", async () => {
+test("a batch is followed until it has ended; the pages of its loops have the curves of their own jobs", async () => {
   let over = false;
   await withBatch(`#/batches/${ID}/check`, () => over, async (page) => {
     await page.getByText("3 of 8 loops checked.").waitFor();
     over = true;
     await rows(page).first().waitFor();
     assert.deepEqual(await tags(page), IN_ORDER);
+    await page.getByText("8 loops. 2 records of the batch could not be checked.").waitFor();
     assert.equal(await page.getByRole("columnheader", { name: "Last periods" }).count(), 0);
+    assert.equal(await rows(page).locator("td.spark svg").count(), 7, "of the whole record");
+    await page.getByRole("columnheader", { name: "Period (min)" }).waitFor();
     assert.equal(await page.title(), "Unit 22 · Check · Tunewright");
     await page.getByRole("link", { name: "TIC-104", exact: true }).first().click();
     await page.getByRole("heading", { name: "TIC-104", level: 1 }).waitFor();

@@ -4,7 +4,7 @@ import test from "node:test";
 import { eventsIn } from "../../../../web/src/api/events.ts";
 import { earlierOf } from "../../../../web/src/check/earlier.ts";
 import { counts, mendedBefore, shownRows, workColumns, workCsv, workRows } from "../../../../web/src/check/columns.ts";
-import { alongAxis, clusterOf, periodGroups, periodRange, periodTicks, ridge } from "../../../../web/src/check/periods.ts";
+import { alongAxis, clusterOf, periodGroups, periodOf, periodRange, periodTicks, ridge } from "../../../../web/src/check/periods.ts";
 import { WHOLE_LIST } from "../../../../web/src/routes.ts";
 import { verdictOrder } from "../../../../web/src/words/check.ts";
 import { unitNames } from "../../../../web/src/words/numbers.ts";
@@ -92,19 +92,28 @@ test("the map of periods has the clusters of the answer, then the other loops by
 });
 
 test("the axis of periods holds every period, with round figures of a clock", () => {
-  const range = periodRange(answer.loops)!;
+  const range = periodRange(answer)!;
   for (const { shape } of answer.loops) if (shape.period > 0) assert.ok(alongAxis(shape.period, range) > 0 && alongAxis(shape.period, range) < 1);
   assert.equal(alongAxis(range[0], range), 0);
   assert.equal(alongAxis(range[1], range), 1);
-  assert.equal(periodRange([answer.loops[0]]), null);
+  assert.equal(periodRange({ ...answer, loops: [answer.loops[0]] }), null);
   assert.deepEqual(periodTicks([8, 400], 8).map(([, name]) => name), ["10 s", "20 s", "30 s", "1 min", "2 min", "5 min"]);
   const ticks = periodTicks([1, 200_000], 6);
   assert.ok(ticks.length <= 6 && ticks.length > 3);
   assert.ok(ticks.every(([tick], index) => index === 0 || tick > ticks[index - 1]![0]));
 });
 
+test("the map of a batch has periods without spectra, in the unit of its times", () => {
+  const bare = answer.loops.map(({ shape: _shape, ...loop }: { shape: unknown }) => loop);
+  const batch = { ...answer, loops: bare, units: { time: "min" } } as never;
+  assert.equal(periodOf(batch, 1), 6000);
+  assert.equal(periodOf(batch, 0), 0);
+  assert.deepEqual(periodGroups(batch).map(({ places }) => places), [[1, 2], [4, 6]]);
+  assert.deepEqual(ridge(undefined, [1, 100]), []);
+});
+
 test("a spectrum is drawn where its periods are", () => {
-  const range = periodRange(answer.loops)!;
+  const range = periodRange(answer)!;
   const curve = ridge(answer.loops[1].shape, range);
   const [at, power] = curve.reduce((best, point) => (point[1] > best[1] ? point : best));
   assert.equal(power, 1);

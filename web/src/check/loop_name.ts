@@ -1,7 +1,8 @@
-// The mark of a cause: its shape says how certain the cause is, its colour only repeats the words next to it.
+// How a loop is named in cells and sentences: a link to its page, and the mark of its cause. The shape of the mark says how
+// certain the cause is, its colour only repeats the words next to it.
 import type { LoopCheck } from "../api/types.ts";
 import { h, node, svgElement } from "../dom.ts";
-import type { TreeNode } from "../dom.ts";
+import type { Child, TreeNode } from "../dom.ts";
 import { confidenceWords, toneOf, verdictWords } from "../words/check.ts";
 import type { Confidence } from "../words/check.ts";
 
@@ -34,4 +35,24 @@ export function causeMark(cause: Pick<LoopCheck["cause"], "verdict" | "confidenc
     shape(cause.confidence),
     h("span", {}, verdictWords(cause.verdict), h("span", { class: "sureness" }, sureness)),
   );
+}
+
+/** Of a loop's page, by its place. */
+export type LoopAddress = (place: number) => string;
+
+export const loopLink = (place: number, tag: string, address: LoopAddress): HTMLAnchorElement =>
+  h("a", { href: address(place), "data-loop": place }, tag);
+
+/** "A, B and C", as links. */
+export const listed = (links: HTMLElement[]): Child[] =>
+  links.flatMap((link, index): Child[] => [index === 0 ? "" : index === links.length - 1 ? " and " : ", ", link]);
+
+/** What is shown of the work list is a part of the address: it is written when a link is followed or copied, so that it is
+    that of the list as it is then. */
+export function followAddress(part: HTMLElement, address: LoopAddress): void {
+  const write = (event: Event): void => {
+    const link = event.target instanceof Element ? event.target.closest<HTMLAnchorElement>("a[data-loop]") : null;
+    if (link) link.href = address(Number(link.dataset["loop"]));
+  };
+  for (const event of ["pointerdown", "focusin", "click"]) part.addEventListener(event, write, { capture: true });
 }

@@ -17,6 +17,8 @@ export interface CheckState {
   /** "": it has none. */
   name: string;
   ended: boolean;
+  /** When it ended; null: not yet, or not known. */
+  finished: string | null;
   /** It waits for its turn. */
   waits: boolean;
   /** Of its loops, 0 to 1. */
@@ -79,6 +81,7 @@ const stateOf = (job: CheckJob): CheckState => {
   return {
     name: job.name ?? "",
     ended,
+    finished: job.finished_at ?? null,
     waits: job.status === "queued",
     fraction: job.progress?.fraction ?? 0,
     message: job.progress?.message ?? "",
@@ -119,6 +122,7 @@ function batchSource(id: string, { onState, onTrouble }: CheckFollower): CheckSo
     return {
       name: batch.name ?? "",
       ended: hasEnded(batch),
+      finished: batch.finished_at,
       waits: false,
       fraction: batch.total === 0 ? 0 : done / batch.total,
       message: batch.status === "receiving" ? `${counted(batch.total, "loop")} read so far.` : `${done} of ${counted(batch.total, "loop")} checked.`,

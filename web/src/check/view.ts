@@ -7,6 +7,7 @@ import { FormErrors } from "../form/errors.ts";
 import { fileNameOf } from "../plot/export.ts";
 import { addressOfCheck, formatRoute, sameCheck, WHOLE_LIST } from "../routes.ts";
 import type { CheckedBy, CheckRoute } from "../routes.ts";
+import { reportLink } from "../views/report_link.ts";
 import { requestMenu } from "../views/request_menu.ts";
 import type { View } from "../views/start.ts";
 import { unitNames } from "../words/numbers.ts";
@@ -62,7 +63,8 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
   const fresh = h("a", { href: "#/check" }, "New check");
   const save = h("button", { type: "button", class: "quiet", onclick: () => list.save(fileNameOf({ subject: state?.name ?? "", fileName: "work-list" })) }, "Work list as CSV");
   const menu = requestMenu(announce);
-  const tools = h("p", { class: "actions check-tools" }, again, fresh, save);
+  const report = reportLink();
+  const tools = h("p", { class: "actions check-tools" }, again, fresh, report.element, save);
   const form = checkForm(errors, { onCheck: () => void send(), onExample: () => void tryExample() });
   const progress = checkProgress(announce, () => void source?.cancel().catch(complain));
   const list = workList(announce, (view) => {
@@ -191,6 +193,8 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
     save.hidden = !found;
     menu.element.hidden = route.of === null || !state?.request || route.loop !== null;
     again.hidden = !state?.request;
+    // A batch has one for each of its jobs.
+    report.show(found && route.of?.kind === "job" ? route.of.id : null, state?.finished);
     again.href = formatRoute({ ...EMPTY, from: route.of?.id ?? null });
     document.title = `${route.of === null ? "" : `${text} · `}Check · Tunewright`;
   }

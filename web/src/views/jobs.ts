@@ -123,8 +123,7 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
     const list: HTMLElement[] = [
       h("a", { href: formatRoute({ screen: "edit", job: job.id }), "aria-label": `Duplicate ${name}` }, "Duplicate"),
     ];
-    // A check has no report.
-    if (job.status === "succeeded" && !job.outline?.check) {
+    if (job.status === "succeeded") {
       const report = reportLink();
       report.show(job.id, job.finished_at);
       report.element.setAttribute("aria-label", `Report of ${name}`);

@@ -106,7 +106,7 @@ Html reasons_of(const JsonLocation& part, const std::vector<std::pair<const char
     return list(out);
 }
 
-Html cause_of(const ReportInput& s, const JsonLocation& loop) {
+Html cause_of(const JsonLocation& loop) {
     const JsonLocation cause = loop.at("cause");
     const std::string verdict = text_at(cause.at("verdict")), confidence = text_at(cause.at("confidence"));
     Html out = element("p", element("strong", verdict_title(verdict)) + Html(", " + confidence + "."));
@@ -116,11 +116,6 @@ Html cause_of(const ReportInput& s, const JsonLocation& loop) {
     for (const Json& other : cause.at("alternatives").value())
         if (other.is_string()) others += (others.empty() ? "" : ", ") + verdict_title(other.get<std::string>());
     if (!others.empty()) out += element("p", "The record does not exclude: " + others + ".");
-    const auto figures = rows_of(
-        cause, {{"size", with_unit(verdict == "backlash" ? "Width of the backlash" : "Dead band and stick", s.u)},
-                {"jump", with_unit("Jump when it breaks loose", s.u)},
-                {"period", with_unit("Period of its cycle", s.time)}});
-    if (!figures.empty()) out += table("Its size", {"", "Value"}, figures);
     return section("Cause", out);
 }
 
@@ -173,7 +168,14 @@ Html figures_of(const ReportInput& s, const JsonLocation& loop) {
         error.push_back({with_unit("Its shortest dead time", s.time), figure(harris.at("delays").at(0))});
         error.push_back({with_unit("Its longest dead time", s.time), figure(harris.at("delays").at(1))});
     }
+    const JsonLocation cause = loop.at("cause");
+    const bool plays = text_at(cause.at("verdict")) == "backlash";
+    const std::vector<Row> sizes =
+        rows_of(cause, {{"size", with_unit(plays ? "Width of the backlash" : "Dead band and stick", s.u)},
+                        {"jump", with_unit("Jump when it breaks loose", s.u)},
+                        {"period", with_unit("Period of its cycle", s.time)}});
     Html tables = table("Error and output", {"", "Value"}, error);
+    if (!sizes.empty()) tables += table("Cause", {"", "Value"}, sizes);
     const JsonLocation periods = loop.at("oscillation").at("periods");
     std::vector<Row> oscillations;
     for (std::size_t k = 0; k < periods.value().size(); ++k) {
@@ -248,7 +250,7 @@ Html page_of_loop(const ReportInput& s, std::size_t place) {
     const std::vector<Html> remarks = sentences_at(loop.at("quality").at("remarks"), "detail");
     return element("section",
                    element("h1", text_at(loop.at("tag"))) + (source.empty() ? Html() : element("p", source)) +
-                       cause_of(s, loop) + action_of(s, loop, rank) +
+                       cause_of(loop) + action_of(s, loop, rank) +
                        (remarks.empty() ? Html() : section("Remarks on the record", list(remarks))) +
                        drawings_of(s, loop) + figures_of(s, loop),
                    {{"class", "loop"}});

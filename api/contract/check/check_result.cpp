@@ -160,7 +160,7 @@ const Description<BatchCheck>& batch_check_contract() {
         Description<B> d("BatchCheck", "What the loops of a batch of checks say together, as far as they are checked.");
         d.field(
              "loops", {}, [](const B& check, Writer& out) { write_texts(check.loops, out); },
-             list_of(answer(loop_check_contract())).schema,
+             list_of(answer(loop_of_batch_contract())).schema,
              "The loops, with index and job of each, without the parts that only its own result has (excerpt, "
              "spectrum, "
              "autocorrelation, shape). The cause of a loop that its neighbour disturbs is external here.")

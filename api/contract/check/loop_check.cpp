@@ -5,6 +5,7 @@
 #include "api/contract/controller.h"
 #include "api/contract/plant/plant.h"
 #include "api/contract/result/evaluation.h"
+#include "engine/check/action.h"
 
 namespace tunewright::api {
 namespace {
@@ -110,14 +111,14 @@ const Description<Evidence>& evidence_contract() {
 
 Codec<Confidence> confidence() {
     using enum Confidence;
-    return only_answered(choice<Confidence>({{"sure", sure}, {"likely", likely}, {"open", open}}));
+    return choice<Confidence>({{"sure", sure}, {"likely", likely}, {"open", open}});
 }
 
 const Description<Cause>& cause_contract() {
     static const auto description = [] {
         Description<Cause> d("LoopCause", "Why the loop is as it is.");
         d.field("verdict", &Cause::verdict, only_answered(check_verdict()), "The cause.")
-            .field("confidence", &Cause::confidence, confidence(),
+            .field("confidence", &Cause::confidence, only_answered(confidence()),
                    "open: the verdict is undetermined or insufficient-data.")
             .field("evidence", &Cause::evidence, answered_list(evidence_contract()), "The strongest first.")
             .field("alternatives", &Cause::alternatives, only_answered(list_of(check_verdict())),
@@ -334,26 +335,50 @@ Codec<ActionCode> check_action() {
                                {"test", test}});
 }
 
+namespace {
+
+/// The members of a loop's answer, but for those that are drawn of a single loop.
+void add_findings(Description<CheckedLoop>& d) {
+    using L = CheckedLoop;
+    d.field("tag", &L::tag, words(), "Its name.")
+        .field("quality", &L::quality, answer(quality_contract()), "The record; it comes before every diagnosis.")
+        .field("service", &L::service, answer(service_contract()), "For what share of the time it was controlled.")
+        .field("oscillation", &L::oscillation, answer(oscillation_contract()), "Whether the error oscillates.")
+        .field("cause", &L::cause, answer(cause_contract()), "Why the loop is as it is.")
+        .field("performance", &L::performance, answer(loop_performance_contract()), "How much error and output move.")
+        .field("action", &L::action, answer(action_contract()), "What to do first.")
+        .field("cure", &L::cure, only_answered(maybe(answer(cure_contract()))),
+               "New settings, or the test that is missing, where tuning is the cause and settings were asked for.")
+        .field("weight", &L::weight, only_answered(maybe(number())), "As in the request.")
+        .field("trend", &L::trend, answer(trend_contract()), "The whole record, as extremes of even stretches.");
+}
+
+}  // namespace
+
 const Description<CheckedLoop>& loop_check_contract() {
     static const auto description = [] {
         using L = CheckedLoop;
         Description<L> d("LoopCheck", "What a loop's record says about it.");
-        d.field("tag", &L::tag, words(), "Its name.")
-            .field("quality", &L::quality, answer(quality_contract()), "The record; it comes before every diagnosis.")
-            .field("service", &L::service, answer(service_contract()), "For what share of the time it was controlled.")
-            .field("oscillation", &L::oscillation, answer(oscillation_contract()), "Whether the error oscillates.")
-            .field("cause", &L::cause, answer(cause_contract()), "Why the loop is as it is.")
-            .field("performance", &L::performance, answer(loop_performance_contract()),
-                   "How much error and output move.")
-            .field("action", &L::action, answer(action_contract()), "What to do first.")
-            .field("cure", &L::cure, only_answered(maybe(answer(cure_contract()))),
-                   "New settings, or the test that is missing, where tuning is the cause and settings were asked for.")
-            .field("weight", &L::weight, only_answered(maybe(number())), "As in the request.")
-            .field("trend", &L::trend, answer(trend_contract()), "The whole record, as extremes of even stretches.")
-            .field("excerpt", &L::excerpt, answer(trend_contract()), "Its last periods.")
+        add_findings(d);
+        d.field("excerpt", &L::excerpt, answer(trend_contract()), "Its last periods.")
             .field("spectrum", &L::spectrum, answer(curve_contract()), "Share of the error's power over the period.")
             .field("autocorrelation", &L::autocorrelation, answer(curve_contract()), "Of the error, over the lag.")
             .field("shape", &L::shape, object(shape_contract()), "For the judgement of many loops together.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<CheckedLoop>& loop_of_batch_contract() {
+    static const auto description = [] {
+        Description<CheckedLoop> d("LoopOfBatch", "What a loop's record says about it, in the judgement of a batch.");
+        add_findings(d);
+        d.field(
+             "index", {}, [](const CheckedLoop&, Writer& out) { out.null(); }, integer(0, 1 << 30).schema,
+             "Its entry in the batch, from 0.")
+            .field(
+                "job", {}, [](const CheckedLoop&, Writer& out) { out.null(); }, words().schema,
+                "The job of the entry, whose result has the drawn parts too.");
         return d;
     }();
     return description;
@@ -366,8 +391,19 @@ double number_in(const Json& object, const char* name) {
     return at != object.end() && at->is_number() ? at->get<double>() : 0;
 }
 
+Figure figure_in(const Json& object, const char* name) {
+    const auto at = object.find(name);
+    if (at != object.end() && at->is_number()) return at->get<double>();
+    return no_figure(object.value("why_null", Json::object()).value(name, ""));
+}
+
 void read_cause(const Json& from, Cause& cause, Reader& reader) {
     if (from.contains("verdict")) check_verdict().read(from["verdict"], cause.verdict, reader);
+    if (from.contains("confidence")) confidence().read(from["confidence"], cause.confidence, reader);
+    cause.size = figure_in(from, "size");
+    cause.jump = figure_in(from, "jump");
+    cause.period = figure_in(from, "period");
+    cause.why_open = from.value("why_open", "");
     for (const Json& other : from.value("alternatives", Json::array())) {
         Verdict verdict = Verdict::undetermined;
         check_verdict().read(other, verdict, reader);
@@ -397,8 +433,7 @@ check::LoopCheck read_loop_check(const Json& loop) {
             {.period = number_in(period, "period"), .share = number_in(period, "share")});
     }
     read_cause(loop.value("cause", Json::object()), check.cause, reader);
-    if (const auto code = "/action/code"_json_pointer; loop.contains(code))
-        check_action().read(loop.at(code), check.action.code, reader);
+    check.action = action_for(check);  // a function of the cause
     if (loop.contains("shape")) shape_contract().read(loop["shape"], check.shape, reader);
     return check;
 }

@@ -8,6 +8,9 @@ namespace tunewright::api {
 
 const Description<CheckedLoop>& loop_check_contract();
 
+/// For the schema: PlantChecks writes it from the texts of the results.
+const Description<CheckedLoop>& loop_of_batch_contract();
+
 /// What the judgement of a batch needs of a loop's answer; the rest keeps its defaults.
 check::LoopCheck read_loop_check(const Json& loop);
 

@@ -8,9 +8,10 @@
 namespace tunewright::api {
 namespace {
 
-constexpr double kSilence = 2.5;         ///< usual spacings
-constexpr double kRegularShare = 0.8;    ///< of the spacings that are usual in a sampled record
-constexpr double kUsualTolerance = 0.2;  ///< relative, of a usual spacing
+constexpr std::size_t kMinSampledRows = 20;  ///< fewer values do not show how y was stored
+constexpr double kSilence = 2.5;             ///< usual spacings
+constexpr double kRegularShare = 0.8;        ///< of the spacings that are usual in a sampled record
+constexpr double kUsualTolerance = 0.2;      ///< relative, of a usual spacing
 
 /// The median of the spacings; 0 if there are none.
 double usual_spacing(const std::vector<double>& t) {
@@ -31,8 +32,9 @@ bool is_sampled(const std::vector<double>& t, double usual) {
 
 /// The times of the rows: those of y, and those of u where y is silent.
 std::vector<double> row_times(const std::vector<double>& y, const std::vector<double>& u) {
-    const double usual = usual_spacing(y);
-    if (y.size() < 2 || is_sampled(y, usual)) return y;
+    const bool few = y.size() < kMinSampledRows;
+    const double usual = usual_spacing(few ? u : y);
+    if (y.empty() || (!few && is_sampled(y, usual))) return y;
     std::vector<double> out;
     out.reserve(y.size());
     auto next = u.begin();

@@ -26,9 +26,9 @@ void put_in_order(TagModes& tag);
 /// The rows of a loop from tags in the order of time, in three steps.
 ///
 /// 1. The rows are the times of y.
-/// 2. If the times of y are irregular, y was stored only when it changed: where it is silent for more than 2.5 of its
-///    usual spacings, the times of u become rows too, and y holds its value there. If they are regular, such a silence
-///    is a gap.
+/// 2. If the times of y are irregular or fewer than 20, y was stored only when it changed: where it is silent for more
+///    than 2.5 of its usual spacings (of those of u if y is so short), the times of u become rows too, and y holds its
+///    value there. If they are regular, such a silence is a gap.
 /// 3. u, r and the mode hold their last value.
 void join_tags(const TagValues& y, const TagValues& u, const TagValues& r, const TagModes& mode, TaggedLoop& loop);
 

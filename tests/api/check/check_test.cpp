@@ -6,6 +6,7 @@
 #include "api/batch/plant_checks.h"
 #include "api/check_service.h"
 #include "engine/check/together/plant_check.h"
+#include "engine/number_text.h"
 #include "tests/api/support.h"
 #include "tests/engine/check/simulated_loop.h"
 
@@ -18,8 +19,8 @@ std::string csv_of(const check::LoopSetUp& loop, std::uint64_t seed) {
     const Record record = check::simulated(loop, seed);
     std::string out = "t,sp,pv,op\n";
     for (std::size_t i = 0; i < record.t.size(); ++i)
-        out += text(record.t[i], 9) + "," + text(record.r[i], 9) + "," + text(record.y[i], 9) + "," +
-               text(record.u[i], 9) + "\n";
+        out += tunewright::text(record.t[i], 9) + "," + tunewright::text(record.r[i], 9) + "," +
+               tunewright::text(record.y[i], 9) + "," + tunewright::text(record.u[i], 9) + "\n";
     return out;
 }
 
@@ -84,8 +85,8 @@ TEST(Check, BadRequestsNameTheMemberAndTheCure) {
         const Answer answer = check_call(request.dump(), {});
         EXPECT_EQ(answer.status, 422) << answer.body.substr(0, 300);
         const Json errors = Json::parse(answer.body).value("errors", Json::array());
-        return errors.empty() ? std::string() : errors[0]["pointer"].get<std::string>() + " " +
-                                                    errors[0]["detail"].get<std::string>();
+        return errors.empty() ? std::string()
+                              : errors[0]["pointer"].get<std::string>() + " " + errors[0]["detail"].get<std::string>();
     };
     EXPECT_THAT(refused({{"loops", Json::array()}}), HasSubstr("/loops"));
     EXPECT_THAT(refused({{"loops", {{{"tag", "A"}}}}}), HasSubstr("/loops/0/record record is missing"));

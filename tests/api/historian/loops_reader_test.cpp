@@ -278,6 +278,14 @@ TEST(LoopsReader, ASilenceIsHeldIfYIsStoredByChangesAndAGapIfItIsSampled) {
     EXPECT_NEAR(static_cast<double>(rows_between(false)), 50, 2);
 }
 
+TEST(LoopsReader, AMeasurementThatStandsStillHasTheRowsOfTheOutput) {
+    std::string text = "Time,Tag,Value\n0,FIC1.PV,7\n4000,FIC1.PV,7\n";
+    for (int k = 0; k < 500; ++k) text += std::to_string(k * 10) + ",FIC1.OP," + std::to_string(k % 9) + "\n";
+    const TaggedLoop loop = loop_of(read_file(text), "FIC1");
+    EXPECT_EQ(loop.t.size(), 500u);
+    EXPECT_THAT(loop.y, Each(7));
+}
+
 TEST(LoopsReader, AnExportByChangesInColumnsIsJoinedLikeTags) {
     std::string text = "Time,FIC1.PV,FIC1.OP,FIC2.PV,FIC2.OP\n";
     for (int k = 0; k < 80; ++k) {

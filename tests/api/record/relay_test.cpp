@@ -1,7 +1,7 @@
 // POST /v1/experiments/relay: answers checked against the document, and refusals.
 #include <gmock/gmock.h>
 
-#include "support.h"
+#include "tests/api/support.h"
 
 namespace tunewright::api {
 namespace {

@@ -42,15 +42,17 @@ constexpr const char* kLoops = R"([
    "trend": {"t": [0, 1, 2], "y": [1, 2, 1], "r": [1, 1, 1], "u": [3, 4, 3]},
    "excerpt": {"t": [0, 1, 2], "y": [1, 2, 1], "u": [3, 4, 3]}, "spectrum": {"x": [1, 10, 100], "y": [0, 0.9, 0.1]}}])";
 
-std::string result(const std::string& more = "") {
+constexpr const char* kRanking = R"([{"loop": 2, "gain": 0.2274, "share": 0.576, "money": null, "effort": 3},
+    {"loop": 1, "gain": null, "share": null, "money": null, "effort": 3, "after": 2,
+     "why_null": {"gain": "From outside.", "share": "From outside."}},
+    {"loop": 0, "gain": 0, "share": 0, "money": null, "effort": 0}])";
+
+std::string result(const std::string& ranking = kRanking) {
     return R"({"units": {"time": "s", "y": "m3/h", "u": "%"}, "version": "0", "request_hash": "h", "partial": false,
         "clusters": [{"period": 54.1, "loops": [2, 1], "source": 2, "detail": "FIC101 moves first."}],
         "cascades": [{"master": 1, "slave": 0}],
-        "ranking": [{"loop": 2, "gain": 0.2274, "share": 0.576, "money": null, "effort": 3},
-                    {"loop": 1, "gain": null, "share": null, "money": null, "effort": 3, "after": 2,
-                     "why_null": {"gain": "From outside.", "share": "From outside."}},
-                    {"loop": 0, "gain": 0, "share": 0, "money": null, "effort": 0}], "loops": )" +
-           std::string(kLoops) + more + "}";
+        "ranking": )" +
+           ranking + R"(, "loops": )" + std::string(kLoops) + "}";
 }
 
 std::string report_of(const std::string& text) {
@@ -84,7 +86,7 @@ TEST(CheckReport, TheWorkListHasGainsWithUnitsOrTheReason) {
     EXPECT_THAT(page, HasSubstr("<td>known when FIC101 is mended</td>"));
     EXPECT_THAT(page, HasSubstr("<td>instruments</td><td>work on the plant</td>"));
     EXPECT_THAT(page, Not(HasSubstr("Money")));
-    const std::string alone = report_of(result(R"(, "ranking": [{"loop": 1, "gain": null, "effort": 3,
+    const std::string alone = report_of(result(R"([{"loop": 1, "gain": null, "effort": 3,
         "why_null": {"gain": "From outside."}, "money": 12}])"));
     EXPECT_THAT(alone, HasSubstr("<td>From outside.</td>"));
     EXPECT_THAT(alone, HasSubstr("<span data-at=\"/result/ranking/0/money\">12</span>"));
@@ -109,7 +111,7 @@ TEST(CheckReport, ALoopHasEvidenceRemarksFiguresAndPictures) {
           "In automatic: none. The record has no column of the mode.", "Harris range: none. The record is too short.",
           "Measurement against output (PV against OP)", "Power of the error"})
         EXPECT_THAT(page, HasSubstr(part));
-    EXPECT_EQ(occurrences(page, "Whole record, output"), 2u) << "a loop without a trend has no drawing";
+    EXPECT_EQ(occurrences(page, "Whole record, output"), 4u) << "two loops have a trend; title and caption";
 }
 
 TEST(CheckReport, WhatOnlyResemblesACheckNeverStopsTheService) {
@@ -126,14 +128,14 @@ TEST(CheckReport, WhatOnlyResemblesACheckNeverStopsTheService) {
 TEST(CheckReport, TheTableIsInTheOrderOfTheRanking) {
     const std::string shown = check_text(result());
     EXPECT_THAT(shown, HasSubstr("3 loops: 1 sticking valve, 1 disturbed from outside, 1 healthy.\n\n"
-                                "   loop     cause                   confidence  do first          owner        gain "
-                                "(m3/h)  of the error  period (s)\n"
-                                "1  FIC101   Sticking valve          sure        repair the valve  instruments        "
-                                "0.227          58 %          54\n"
-                                "2  LIC104   Disturbed from outside  likely      find the source   process          "
-                                "        -             -        54.2\n"
-                                "3  FIC<2>   Healthy                 likely      nothing           –                "
-                                "        0           0 %           -\n"));
+                                 "   loop    cause                   confidence  do first          owner        gain "
+                                 "(m3/h)  of the error  period (s)\n"
+                                 "1  FIC101  Sticking valve          sure        repair the valve  instruments        "
+                                 "0.227          58 %          54\n"
+                                 "2  LIC104  Disturbed from outside  likely      find the source   process             "
+                                 "   -             -        54.2\n"
+                                 "3  FIC<2>  Healthy                 likely      nothing           –                   "
+                                 "   0           0 %           -\n"));
     EXPECT_THAT(shown, HasSubstr("Oscillate together: FIC101, LIC104\n  FIC101 moves first.\n"));
     EXPECT_THAT(shown, HasSubstr("Cascade: LIC104 gives FIC<2> its set point.\n"));
     EXPECT_THAT(shown, HasSubstr("\nFIC101\n  It oscillates.\n  A valve that sticks explains it.\n  Have the valve"));

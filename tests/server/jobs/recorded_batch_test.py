@@ -40,6 +40,16 @@ class RecordedBatchTest(unittest.TestCase):
             self.assertAlmostEqual(row["result"]["loops"][0]["quality"]["sample_time"], 1 / 6, places=9)
         self.assertEqual(wait_for_end(self.service, batch["id"])["counts"]["succeeded"], len(tags))
 
+    def test_the_judgement_together_keeps_what_each_loop_has_by_itself(self):
+        batch = self.post(plant(["FIC1", "FIC2"], rows=2000))
+        alone = {row["name"]: row["result"]["loops"][0] for row in self.rows(batch)}
+        answer = self.service.get("/v1/batches/%s/check" % batch["id"]).json
+        self.assertEqual([loop["tag"] for loop in answer["loops"]], ["FIC1", "FIC2"])
+        disturbed = {rank["loop"] for rank in answer["ranking"] if "after" in rank}
+        for place, loop in enumerate(answer["loops"]):
+            if place not in disturbed:
+                self.assertEqual((loop["cause"], loop["action"]), (alone[loop["tag"]]["cause"], alone[loop["tag"]]["action"]))
+
     def test_a_loop_that_cannot_be_read_fails_alone(self):
         good, bad = plant(["FIC1"]).splitlines(), plant(["FIC2"], quiet=True).splitlines()
         table = [good[0] + "," + bad[0].split(",", 1)[1]]

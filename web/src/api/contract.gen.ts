@@ -1287,7 +1287,7 @@ export type components = {
       };
     };
     BatchCheck: {
-      loops: components["schemas"]["LoopCheck"][];
+      loops: components["schemas"]["LoopOfBatch"][];
       clusters: components["schemas"]["LoopCluster"][];
       cascades: components["schemas"]["LoopCascade"][];
       ranking: components["schemas"]["LoopRank"][];
@@ -1297,6 +1297,20 @@ export type components = {
       }[];
       failed: number;
       complete: boolean;
+    };
+    LoopOfBatch: {
+      tag: string;
+      quality: components["schemas"]["CheckedRecord"];
+      service: components["schemas"]["LoopService"];
+      oscillation: components["schemas"]["LoopOscillation"];
+      cause: components["schemas"]["LoopCause"];
+      performance: components["schemas"]["LoopPerformance"];
+      action: components["schemas"]["CheckAction"];
+      cure?: components["schemas"]["LoopCure"];
+      weight?: number;
+      trend: components["schemas"]["LoopTrend"];
+      index: number;
+      job: string;
     };
     LoopChange: {
       before: "healthy" | "stiction" | "backlash" | "tight" | "sluggish" | "external" | "saturation" | "quantised" | "manual" | "frozen" | "undetermined" | "insufficient-data";
@@ -1881,6 +1895,7 @@ export type LoopCluster = components['schemas']['LoopCluster'];
 export type LoopCascade = components['schemas']['LoopCascade'];
 export type LoopRank = components['schemas']['LoopRank'];
 export type BatchCheck = components['schemas']['BatchCheck'];
+export type LoopOfBatch = components['schemas']['LoopOfBatch'];
 export type LoopChange = components['schemas']['LoopChange'];
 export type RangeRequest = components['schemas']['RangeRequest'];
 export type Scheduling = components['schemas']['Scheduling'];

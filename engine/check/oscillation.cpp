@@ -225,15 +225,19 @@ Curve drawn_spectrum(const std::vector<double>& error, double step) {
     const double shortest = std::log(2.0), longest = std::log(n / 2);
     if (!(longest > shortest)) return curve;
     std::vector<double> bins(kSpectrumPoints, 0.0);
+    std::vector<char> known(kSpectrumPoints, 0);  // at long periods some steps have no frequency
     double total = 0;
     const double per = 1 / static_cast<double>(2 * (power.size() - 1));
     for (std::size_t k = 1; k < power.size(); ++k) {
         const double place = (-std::log(per * static_cast<double>(k)) - shortest) / (longest - shortest);
         if (place < 0 || place >= 1) continue;
-        bins[static_cast<std::size_t>(place * kSpectrumPoints)] += power[k];
+        const auto at = static_cast<std::size_t>(place * kSpectrumPoints);
+        bins[at] += power[k];
+        known[at] = 1;
         total += power[k];
     }
     for (std::size_t i = 0; i < bins.size() && total > 0; ++i) {
+        if (!known[i]) continue;
         curve.x.push_back(step * std::exp(shortest + (longest - shortest) * (double(i) + 0.5) / kSpectrumPoints));
         curve.y.push_back(bins[i] / total);
     }

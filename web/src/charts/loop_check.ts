@@ -101,13 +101,8 @@ function periodSentence({ oscillation }: LoopCheck, units: UnitNames): string {
   return `Regular oscillations with periods of ${periods.map(({ period }) => `${formatNumber(period)} ${units.time}`).join(", ")}.`;
 }
 
-/** Without steps of the axis in which no frequency of the record lies: between long periods they are many. */
-function filled({ x, y }: CheckCurve): { x: number[]; y: number[] } {
-  const kept = x.flatMap((period, index) => (y[index] ? [[period, 100 * y[index]] as const] : []));
-  return { x: kept.map(([period]) => period), y: kept.map(([, share]) => share) };
-}
-
 function spectrumFrame(loop: LoopCheck, units: UnitNames): Frame | null {
+  const { x, y } = loop.spectrum;
   if (!hasCurve(loop.spectrum)) return null;
   const label = withUnit("period", units.time);
   return {
@@ -117,7 +112,7 @@ function spectrumFrame(loop: LoopCheck, units: UnitNames): Frame | null {
     panes: [
       {
         y: { kind: "linear", label: "power (%)" },
-        traces: [{ name: "share of the power", look: 1, ...filled(loop.spectrum) }],
+        traces: [{ name: "share of the power", look: 1, x, y: y.map((share) => (share === null ? null : 100 * share)) }],
         marks: periodMarks(loop, units),
       },
     ],

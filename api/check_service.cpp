@@ -190,7 +190,7 @@ Answer check_call(std::string_view body, const RunControl& control) {
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     auto result = checked(read_loops(std::get<CheckRequest>(std::move(decoded))), control);
     if (!result) return refusal(to_problem(result.error()));
-    // What a stopped check has found is not kept.
+    // The partial result of a check that was stopped is not kept.
     if (result->partial) return refusal(to_problem(Error{ErrorKind::timeout, "", "The check was stopped."}));
     Writer out;
     check_answer_contract().write(*result, out);

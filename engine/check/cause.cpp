@@ -95,13 +95,13 @@ private:
         of_error_ = strongest_peak(std::span(error_).subspan(skip));
         const bool by_output = output_.regularity * output_.share >= of_error_.regularity * of_error_.share;
         peak_ = by_output ? output_ : of_error_;
-        other_ = by_output ? of_error_ : output_;
-        same_ = of_error_.period > 0 && std::abs(output_.period / of_error_.period - 1) < kSamePeriod;
+        const Peak& other = by_output ? of_error_ : output_;
+        const bool same = of_error_.period > 0 && std::abs(output_.period / of_error_.period - 1) < kSamePeriod;
         drifts_ = std::min(output_.spread, of_error_.spread) >= kDrifts;
-        line_ = same_ && !drifts_ ? std::min(output_.line, of_error_.line) : 0;
+        line_ = same && !drifts_ ? std::min(output_.line, of_error_.line) : 0;
         candidates_ = {{peak_.period, peak_.line_period, line_}};
         if (!(peak_.regularity > kClearlyRegular && peak_.share > kClearShare)) {
-            for (const Peak& more : {other_, strongest_peak(std::span(q_.samples.u).subspan(skip), kSlowTilt),
+            for (const Peak& more : {other, strongest_peak(std::span(q_.samples.u).subspan(skip), kSlowTilt),
                                      strongest_peak(std::span(error_).subspan(skip), kSlowTilt)})
                 add_candidate({more.period, more.line_period, 0});
         }
@@ -377,8 +377,8 @@ private:
     const CauseQuestion& q_;
     const std::stop_token& stop_;
     std::vector<double> error_, measurement_;
-    Peak output_, of_error_, peak_, other_;
-    bool same_ = false, drifts_ = false;
+    Peak output_, of_error_, peak_;
+    bool drifts_ = false;
     double line_ = 0, sign_ = 1;
     std::vector<PeriodCandidate> candidates_;
     LoopLaw law_;

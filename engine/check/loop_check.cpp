@@ -62,7 +62,7 @@ Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_tok
     const Samples samples = even_samples(rows);
     check.quality = quality_of(rows, samples);
     const auto u_range = output_range(question, samples);
-    check.service = service_of(samples, u_range);
+    check.service = service_of(samples, u_range, check.quality.u_step);
     if (!samples.y.empty()) {
         check.performance = performance_of(samples, u_range, question);
         check.trend = trend_of(samples);

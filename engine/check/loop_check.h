@@ -156,7 +156,6 @@ struct Shape {
     std::vector<float> wave;               ///< the error's last periods, in deviations, a row every wave_step
     double wave_from = 0, wave_step = 0;   ///< s, like from
     std::vector<float> set_point, output;  ///< means of kShapeMeans stretches; empty: not recorded or constant
-    float nonlinearity = 0;                ///< how far the wave is from a linear series (Thornhill 2005)
 };
 inline constexpr int kShapeBands = 96, kShapePoints = 1024, kShapeMeans = 256;
 /// The bands of Shape::spectrum are even in ln(period), s.

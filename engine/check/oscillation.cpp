@@ -24,13 +24,17 @@ constexpr std::size_t kSpectrumPoints = 160;
 constexpr double kBeside = 0.06;         // of a frequency
 constexpr std::size_t kLinePlaces = 33;  // frequencies that are tried for a single sine
 
+/// The window of Hann at row i of n.
+double hann(std::size_t i, std::size_t n) {
+    return 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (double(i) + 0.5) / double(n));
+}
+
 /// Power over frequency of a window of the series, at twice as many frequencies as it has of its own.
 std::vector<double> power_of(const std::vector<double>& e) {
     const std::size_t n = e.size();
     std::vector<double> padded(quick_length(2 * n), 0.0);
     for (std::size_t i = 0; i < n; ++i) {
-        const double hann = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (double(i) + 0.5) / double(n));
-        padded[i] = hann * e[i];
+        padded[i] = hann(i, n) * e[i];
     }
     const Spectrum X = half_spectrum(padded);
     std::vector<double> power(X.size());
@@ -169,7 +173,6 @@ void find_line(const std::vector<double>& band, double f, Peak& peak) {
 /// Without the sine, the power just beside it relative to the median of the band: about 1 for a sine from outside over
 /// the loop's own noise, large for a loop that hardly damps its own oscillation, whose phase drifts.
 double power_beside(const std::vector<double>& x, double f) {
-    const double n = double(x.size());
     std::complex<double> turn = std::polar(1.0, 2 * std::numbers::pi * f), here = 1;
     double cc = 0, ss = 0, cs = 0, xc = 0, xs = 0;
     for (const double value : x) {
@@ -186,8 +189,7 @@ double power_beside(const std::vector<double>& x, double f) {
     std::vector<double> rest(quick_length(x.size()), 0.0);
     here = 1;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const double hann = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (double(i) + 0.5) / n);
-        rest[i] = hann * (x[i] - a * here.real() - b * here.imag());
+        rest[i] = hann(i, x.size()) * (x[i] - a * here.real() - b * here.imag());
         here *= turn;
     }
     const Spectrum X = half_spectrum(rest);

@@ -5,7 +5,6 @@
 
 #include "engine/check/pace/loop_law.h"
 #include "engine/check/thresholds.h"
-#include "engine/identification/record/series.h"
 
 namespace tunewright::check {
 namespace {
@@ -58,28 +57,27 @@ std::array<double, 2> output_range(const LoopQuestion& question, const Samples& 
     return {low - beyond, high + beyond};
 }
 
-std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range) {
+std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range, double u_step) {
     std::vector<char> held(samples.size(), 0);
     const LoopLaw law = loop_law(samples.error(), samples.u, samples.step);
-    const double step = samples.u.empty() ? 0 : quantisation_step(samples.u);
     const double near = kAtLimit * (u_range[1] - u_range[0]);
     for (const EqualRun& run : equal_runs(samples.u)) {
         const double u = samples.u[run.begin];
         if (run.length < still_rows(samples.size()) || u <= u_range[0] + near || u >= u_range[1] - near) continue;
         if (double(run.length) < kHeldShare * double(samples.size()) &&
-            !should_have_moved(samples, run, law.gain, step))
+            !should_have_moved(samples, run, law.gain, u_step))
             continue;
         std::fill_n(held.begin() + static_cast<std::ptrdiff_t>(run.begin), run.length, 1);
     }
     return held;
 }
 
-ServiceShares service_of(const Samples& samples, const std::array<double, 2>& u_range) {
+ServiceShares service_of(const Samples& samples, const std::array<double, 2>& u_range, double u_step) {
     ServiceShares shares;
     const double near = kAtLimit * (u_range[1] - u_range[0]);
     shares.saturated_low = limit_share(samples, u_range[0], near);
     shares.saturated_high = limit_share(samples, u_range[1], near);
-    shares.output_still = share(held_output(samples, u_range));
+    shares.output_still = share(held_output(samples, u_range, u_step));
     shares.measurement_still = still_share(samples.y, samples.u);
     if (samples.automatic.empty()) {
         shares.automatic = no_figure("The record has no column of the mode.");

@@ -9,9 +9,10 @@
 namespace tunewright::check {
 
 /// 1 for each sample whose output rests for long, away from its limits: nobody controls there.
-std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range);
+std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range, double u_step);
 
-ServiceShares service_of(const Samples& samples, const std::array<double, 2>& u_range);
+/// `u_step`: the grid of the output (RecordQuality::u_step).
+ServiceShares service_of(const Samples& samples, const std::array<double, 2>& u_range, double u_step);
 
 /// The range of the output: as given, else 0 to 100, or to 1 where no sample exceeds 1; for an output in another unit
 /// somewhat more than what was seen.

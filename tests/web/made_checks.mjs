@@ -101,7 +101,6 @@ export function madeLoop(tag, verdict, { period = 100, confidence = "sure", auto
       wave_step: 0,
       set_point: [],
       output: [],
-      nonlinearity: 0,
     },
     ...more,
   };

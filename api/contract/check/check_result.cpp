@@ -72,7 +72,7 @@ void add_findings(Description<Owner>& d, const CheckResult& (*check)(const Owner
     part(
         "cascades", list_of(answer(cascade_contract())),
         [](const CheckResult& c) -> const auto& { return c.plant.cascades; },
-        "Pairs of loops of which one gives the other its set point.");
+        "Pairs of loops: the output of one is the set point of the other.");
     part(
         "ranking", list_of(answer(rank_contract())),
         [](const CheckResult& c) -> const auto& { return c.plant.ranking; },
@@ -175,7 +175,8 @@ const Description<BatchCheck>& batch_check_contract() {
                 [](const B& check, Writer& out) {
                     list_of(answer(cascade_contract())).write(check.plant.cascades, out);
                 },
-                list_of(answer(cascade_contract())).schema, "Pairs of which one gives the other its set point.")
+                list_of(answer(cascade_contract())).schema,
+                "Pairs of loops: the output of one is the set point of the other.")
             .field(
                 "ranking", {},
                 [](const B& check, Writer& out) { list_of(answer(rank_contract())).write(check.plant.ranking, out); },

@@ -21,7 +21,7 @@ struct CheckAnswer {
 /// The result of a job.
 const Description<CheckAnswer>& check_result_contract();
 
-/// What the loops of a batch say together.
+/// The common judgement of the loops of a batch.
 struct BatchCheck {
     std::vector<std::string> loops;  ///< each as JSON, in the order of the batch
     check::PlantCheck plant;

@@ -270,12 +270,7 @@ const Description<Shape>& shape_contract() {
             .field("wave_from", &Shape::wave_from, number(), "Time of its first value.")
             .field("wave_step", &Shape::wave_step, number(), "From value to value.")
             .field("set_point", &Shape::set_point, short_numbers(), "Means of even stretches, in standard deviations.")
-            .field("output", &Shape::output, short_numbers(), "Means of even stretches, in standard deviations.")
-            .field(
-                "nonlinearity",
-                [](const Json& value, Shape& shape, Reader&) { shape.nonlinearity = value.get<float>(); },
-                [](const Shape& shape, Writer& out) { out.number(double(shape.nonlinearity)); }, number().schema,
-                "How far the wave is from a linear one.");
+            .field("output", &Shape::output, short_numbers(), "Means of even stretches, in standard deviations.");
         return d;
     }();
     return description;

@@ -11,7 +11,7 @@ const Description<CheckedLoop>& loop_check_contract();
 /// For the schema: PlantChecks writes it from the texts of the results.
 const Description<CheckedLoop>& loop_of_batch_contract();
 
-/// What the judgement of a batch needs of a loop's answer; the rest keeps its defaults.
+/// Reads those members of a loop's answer from which a batch is judged; all others keep their defaults.
 check::LoopCheck read_loop_check(const Json& loop);
 
 /// The members cause and action, of an open object.

@@ -1263,7 +1263,6 @@ export type components = {
       wave_step: number;
       set_point: number[];
       output: number[];
-      nonlinearity: number;
     };
     LoopCluster: {
       period: number;

@@ -1,4 +1,5 @@
 // The form of a check: files that are dropped or chosen, the loops in them, how they are read.
+import { sentenceOf } from "../api/client.ts";
 import type { CheckRequest, FieldError } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { textField } from "../form/controls.ts";
@@ -13,8 +14,8 @@ import type { CheckOrder, LoopTexts } from "./request.ts";
 
 export interface CheckForm {
   element: HTMLElement;
-  /** What is to be checked, with the faults of its texts. */
-  read(): { order: CheckOrder; errors: FieldError[] };
+  /** What is to be checked, with the faults of its texts, as soon as the first lines of all files are read. */
+  read(): Promise<{ order: CheckOrder; errors: FieldError[] }>;
   load(request: CheckRequest): void;
   setBusy(busy: boolean): void;
 }
@@ -26,7 +27,9 @@ export interface CheckFormEvents {
 
 export function checkForm(errors: FormErrors, events: CheckFormEvents): CheckForm {
   let base: Partial<CheckRequest> = {};
+  let firstLines = Promise.resolve();
   const status = h("p", { class: "hint", role: "status" });
+  const faulty = h("p", { class: "error", role: "status", hidden: true });
   const many = h("p", { role: "status", hidden: true }, "This file has the columns of several loops. They are found by their tags, such as FIC101.PV, and checked as a batch.");
   const file = h("input", { type: "file", class: "visually-hidden", multiple: true, accept: ".csv,.tsv,.txt,text/csv,text/plain", tabindex: -1, "aria-label": "CSV files of loops" });
   const choose = h("button", { type: "button", onclick: () => file.click() }, "Choose files");
@@ -67,6 +70,7 @@ export function checkForm(errors: FormErrors, events: CheckFormEvents): CheckFor
     terms,
     reading.element,
     more,
+    faulty,
     h("div", { class: "actions" }, submit, empty, example),
   );
 
@@ -80,10 +84,20 @@ export function checkForm(errors: FormErrors, events: CheckFormEvents): CheckFor
     choose.focus();
   }
 
-  /** After a change of the loops: the first file is the example of how they are read. */
+  /** A file that can be read is the example of how all are read. */
+  async function readFirstLines(files: readonly string[]): Promise<void> {
+    const readable = await rows.read(reading.read());
+    if (readable === null) return;
+    const count = files.length - readable.length;
+    reading.offer(files, readable);
+    faulty.hidden = count === 0 || rows.element.hidden;
+    faulty.textContent = `${counted(count, "file")} cannot be read like this: see the table.`;
+  }
+
+  /** After a change of the loops. */
   function follow(): void {
     const loops = rows.texts();
-    reading.offer(loops.find(({ given }) => given.csv !== undefined)?.given.csv ?? null);
+    firstLines = readFirstLines(loops.flatMap(({ given }) => given.csv ?? []));
     const hasMany = reading.hasMany();
     many.hidden = !hasMany;
     // Of loops that the service finds nothing is known yet; the rows of other files stay, to be removed.
@@ -98,17 +112,19 @@ export function checkForm(errors: FormErrors, events: CheckFormEvents): CheckFor
     errors.clear();
     const left = others > 0 ? ` ${counted(others, "file")} without the ending csv, tsv or txt left out.` : "";
     const loops: LoopTexts[] = [];
+    const faults: FieldError[] = [];
     for (const [index, one] of files.entries()) {
       status.textContent = `Reading file ${index + 1} of ${files.length}...`;
-      const text = await textOf(one).catch((error: unknown) => {
-        errors.fail(error);
-        return null;
-      });
-      if (text !== null) loops.push(loopOfFile(one.name, text));
+      try {
+        loops.push(loopOfFile(one.name, await textOf(one)));
+      } catch (error) {
+        faults.push({ pointer: "/loops", detail: `${one.name} was not added: ${sentenceOf(error)}` });
+      }
     }
     if (loops.length > 0) rows.add(loops);
-    status.textContent = files.length === 0 ? `No file was read.${left}` : `${counted(loops.length, "file")} added.${left}`;
-    if (loops.length > 0) submit.focus({ preventScroll: true });
+    status.textContent = loops.length === 0 ? `No file was added.${left}` : `${counted(loops.length, "file")} added.${left}`;
+    if (faults.length > 0) errors.show(faults);
+    else if (loops.length > 0) submit.focus({ preventScroll: true });
   }
 
   file.addEventListener("change", () => {
@@ -135,7 +151,8 @@ export function checkForm(errors: FormErrors, events: CheckFormEvents): CheckFor
 
   return {
     element,
-    read() {
+    async read() {
+      await firstLines;
       const texts = { name: name.input.value, cluster: cluster.checked, reading: reading.read(), loops: rows.texts(), base };
       if (reading.hasMany()) return readFile(texts);
       const { request, errors: faults } = readCheck(texts);
@@ -151,6 +168,8 @@ export function checkForm(errors: FormErrors, events: CheckFormEvents): CheckFor
     },
     setBusy(busy) {
       submit.disabled = example.disabled = busy;
+      if (busy) submit.textContent = "Sending...";
+      else follow();
     },
   };
 }

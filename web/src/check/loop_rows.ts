@@ -1,22 +1,29 @@
 // The loops of a check as rows to edit: name, kind, range of the output, weight; and a first row that sets all of them.
+import { newest } from "../api/latest.ts";
 import { h } from "../dom.ts";
 import { choiceField, textField } from "../form/controls.ts";
 import type { FormErrors } from "../form/errors.ts";
 import { KINDS } from "../words/check.ts";
 import type { Kind } from "../words/check.ts";
-import type { LoopTexts } from "./request.ts";
+import { fileHead } from "./reading_fields.ts";
+import type { LoopTexts, Reading } from "./request.ts";
 
 export interface LoopRows {
   element: HTMLElement;
   texts(): LoopTexts[];
   show(loops: readonly LoopTexts[]): void;
   add(loops: readonly LoopTexts[]): void;
+  /** Reads the first lines of the files that were not read in this way; their faults then stand in their rows. The texts of the files that can be
+      read; null: it was called again since. */
+  read(reading: Reading): Promise<string[] | null>;
 }
 
 interface LoopRow {
   element: HTMLTableRowElement;
   remove: HTMLButtonElement;
   texts(): LoopTexts;
+  read(reading: Reading): Promise<void>;
+  hasFault(): boolean;
   /** What the first row sets. */
   set(part: Partial<LoopTexts>): void;
   dispose(): void;
@@ -30,6 +37,7 @@ const record = ({ file, given }: LoopTexts): string => file || (given.csv === un
 
 export function loopRows(errors: FormErrors, onChange: () => void): LoopRows {
   let rows: LoopRow[] = [];
+  const begin = newest();
   const body = h("tbody", {});
   const kind = h("select", { "aria-label": "Kind of all loops" }, h("option", { value: "" }, "as below"), KINDS.map(([value, text]) => h("option", { value }, text)));
   const text = (label: string, placeholder: string): HTMLInputElement =>
@@ -84,6 +92,11 @@ export function loopRows(errors: FormErrors, onChange: () => void): LoopRows {
     element,
     texts: () => rows.map((row) => row.texts()),
     add,
+    async read(reading) {
+      const isNewest = begin();
+      for (const row of rows) if (isNewest()) await row.read(reading);
+      return isNewest() ? rows.filter((row) => !row.hasFault()).flatMap((row) => row.texts().given.csv ?? []) : null;
+    },
     show(loops) {
       for (const row of rows) row.dispose();
       rows = [];
@@ -111,13 +124,29 @@ function loopRow(given: LoopTexts, errors: FormErrors, pointer: (part: string) =
   kind.input.addEventListener("change", follow);
   follow();
   const characters = given.given.csv?.length ?? 0;
-  const source = h("span", { class: "hint" }, record(given), characters > 0 ? `, ${size(characters)}` : "");
+  const fault = h("span", { class: "error" });
+  const source = [h("span", { class: "hint" }, record(given), characters > 0 ? `, ${size(characters)}` : ""), fault];
+  let asRead = "";
+  let units: LoopTexts["units"] = given.units;
   const fields = [tag, kind, low, high, weight];
   return {
     element: h("tr", {}, h("th", { scope: "row" }, tag.element), ...[source, kind.element, averaging, low.element, high.element, weight.element, remove].map((cell) => h("td", {}, cell))),
     remove,
+    async read(reading) {
+      const { csv } = given.given;
+      const way = JSON.stringify(reading);
+      if (csv === undefined || asRead === way) return;
+      asRead = way;
+      // The check itself reports what it cannot read.
+      const head = await fileHead(csv, reading).catch(() => null);
+      if (!head || asRead !== way) return;
+      fault.textContent = head.fault;
+      units = { y: head.y, u: head.u };
+    },
+    hasFault: () => fault.textContent !== "",
     texts: () => ({
       ...given,
+      units,
       tag: tag.input.value,
       kind: kind.input.value as Kind,
       averaging: averaging.checked,

@@ -1,7 +1,7 @@
-// How the files of a check are read: columns and unit of the times, the same for all; the preview of the first file.
+// How the files of a check are read: columns and unit of the times, the same for all; the preview of one of them.
 import { newest } from "../api/latest.ts";
 import { previewRecord } from "../api/records.ts";
-import type { Preview } from "../api/types.ts";
+import type { Preview, RecordedTest } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { choiceField } from "../form/controls.ts";
 import type { Field } from "../form/controls.ts";
@@ -13,10 +13,10 @@ import type { Reading } from "./request.ts";
 export interface ReadingFields {
   element: HTMLElement;
   read(): Reading;
-  /** The first file has the columns of several loops, as far as is known. */
+  /** The file that is shown has the columns of several loops, as far as is known. */
   hasMany(): boolean;
-  /** The text of the first file, which shows its columns; null: there is none. */
-  offer(csv: string | null): void;
+  /** The texts of the files, and of those that can be read; one of them shows its columns. */
+  offer(files: readonly string[], readable: readonly string[]): void;
 }
 
 const COLUMNS = [
@@ -38,9 +38,35 @@ const isOfMany = ({ columns, problems }: Preview): boolean =>
 const HEAD = 400_000;
 
 /** Whole lines of the beginning of a text. */
-const headOf = (text: string): string => (text.length <= HEAD ? text : text.slice(0, text.lastIndexOf("\n", HEAD) + 1));
+const headOf = (text: string, most: number): string => (text.length <= most ? text : text.slice(0, text.lastIndexOf("\n", most) + 1));
 
-/** `onChange`: whether the first file has several loops is known. */
+const given = ({ columns, timeUnit }: Reading): Pick<RecordedTest, "columns" | "time_unit"> => {
+  const chosen = Object.fromEntries(Object.entries(columns).filter(([, column]) => column !== ""));
+  return { columns: chosen, ...(timeUnit ? { time_unit: timeUnit } : {}) };
+};
+
+/** Characters of a file that are enough to find what is wrong with it. */
+const FIRST_LINES = 20_000;
+
+/** What its first lines say about a file. */
+export interface FileHead {
+  /** Why it cannot be read; "": it can. */
+  fault: string;
+  /** Units in the headings of measurement and output; "": none. */
+  y: string;
+  u: string;
+}
+
+export async function fileHead(csv: string, reading: Reading): Promise<FileHead> {
+  const { columns, problems } = await previewRecord({ csv: headOf(csv, FIRST_LINES), ...given(reading) });
+  const unitOf = (role: "y" | "u"): string => {
+    const chosen = reading.columns[role];
+    return columns.find(({ guess, heading }) => (chosen ? heading === chosen : guess === role))?.unit ?? "";
+  };
+  return { fault: problems.map(({ detail }) => detail).join(" "), y: unitOf("y"), u: unitOf("u") };
+}
+
+/** `onChange`: whether the shown file has several loops is known. */
 export function readingFields(errors: FormErrors, onChange: () => void): ReadingFields {
   const columns = COLUMNS.map(([id, label]): [string, Field<HTMLSelectElement>] => [
     id,
@@ -56,7 +82,7 @@ export function readingFields(errors: FormErrors, onChange: () => void): Reading
     h(
       "div",
       { class: "stack" },
-      h("p", { class: "hint" }, "The first file, as an example. What you choose here holds for all files. If it has several loops, choose the columns of one to check that loop alone."),
+      h("p", { class: "hint" }, "One file as an example. What you choose here holds for all files. If it has several loops, choose the columns of one to check that loop alone."),
       slot,
       trouble,
       h("div", { class: "fields" }, columns.map(([, field]) => field.element), unit.element),
@@ -73,10 +99,8 @@ export function readingFields(errors: FormErrors, onChange: () => void): Reading
 
   async function look(whole: string): Promise<void> {
     const isNewest = begin();
-    const csv = headOf(whole);
-    const reading = read();
-    const chosen = Object.fromEntries(Object.entries(reading.columns).filter(([, column]) => column !== ""));
-    const preview = await previewRecord({ csv, columns: chosen, ...(reading.timeUnit ? { time_unit: reading.timeUnit } : {}) }).catch(() => null);
+    const csv = headOf(whole, HEAD);
+    const preview = await previewRecord({ csv, ...given(read()) }).catch(() => null);
     // The check itself reports what it cannot read.
     if (!preview || !isNewest()) return;
     many = isOfMany(preview);
@@ -97,7 +121,10 @@ export function readingFields(errors: FormErrors, onChange: () => void): Reading
     element,
     read,
     hasMany: () => many,
-    offer(csv) {
+    offer(files, readable) {
+      const isChosen = Object.values(read().columns).some((column) => column !== "") || unit.input.value !== "";
+      if (isChosen && files.some((csv) => csv === shown)) return;
+      const csv = readable[0] ?? files[0] ?? null;
       if (csv === shown) return;
       shown = csv;
       many = false;

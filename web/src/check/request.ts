@@ -13,6 +13,8 @@ export interface LoopTexts {
   low: string;
   high: string;
   weight: string;
+  /** Of measurement and output, as its file names them; undefined: its file was not read yet. */
+  units?: { y: string; u: string } | undefined;
   /** The name of its file; "" if it came with a request. */
   file: string;
   /** The loop as it came: its record, and members that no field shows. */
@@ -128,6 +130,15 @@ export function linesOf({ loops, name: _name, ...terms }: CheckRequest): string[
   return loops.map((loop) => `${JSON.stringify({ ...(loop.tag ? { name: loop.tag } : {}), ...terms, loops: [loop] })}\n`);
 }
 
+/** Units have one place in a request: those that all files name alike. */
+function commonUnits(loops: readonly LoopTexts[]): Pick<CheckRequest, "units"> {
+  const common = (["y", "u"] as const).flatMap((signal) => {
+    const [unit = "", ...others] = new Set(loops.map(({ units }) => units?.[signal] ?? ""));
+    return unit !== "" && others.length === 0 ? [[signal, unit] as const] : [];
+  });
+  return common.length > 0 ? { units: Object.fromEntries(common) } : {};
+}
+
 export function readCheck(texts: CheckTexts): { request: CheckRequest; errors: FieldError[] } {
   const errors: FieldError[] = [];
   const loops = texts.loops.map((loop, index) => readLoop(loop, index, texts.reading, errors));
@@ -136,6 +147,7 @@ export function readCheck(texts: CheckTexts): { request: CheckRequest; errors: F
   const request: CheckRequest = {
     ...(given(texts.name) ? { name: texts.name.trim() } : {}),
     timeout_s: TIMEOUT_S,
+    ...commonUnits(texts.loops),
     ...kept,
     ...(texts.cluster ? {} : { cluster: false }),
     loops,

@@ -87,12 +87,12 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
   const addressOf = (place: number): string => formatRoute({ ...route, loop: place });
 
   async function send(): Promise<void> {
-    const { order, errors: faults } = form.read();
     errors.clear();
-    if (faults.length > 0) return errors.show(faults);
     form.setBusy(true);
     announce("Sending the records.");
     try {
+      const { order, errors: faults } = await form.read();
+      if (faults.length > 0) return errors.show(faults);
       const by = await sendOrder(order);
       if (by.kind === "job") filledFrom = by.id;
       location.hash = addressOfCheck(by.id, by.kind);

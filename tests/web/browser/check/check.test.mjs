@@ -182,13 +182,18 @@ test("faults stand at their fields, files that are not UTF-8 are read as the ser
   });
 });
 
-test("a file with the columns of many loops becomes a batch, and its work list has them all", async () => {
-  const tags = ["FIC-1", "TIC-2", "PIC-3"];
+/** Loops side by side in one file; the error of the second one is this much larger. */
+function wideFile(tags, size = 1) {
   const lines = [`time [s],${tags.map((tag) => `${tag}.SP,${tag}.PV,${tag}.OP`).join(",")}`];
   for (let row = 0; row < 900; row += 1)
-    lines.push([2 * row, ...tags.flatMap((_, index) => [50, (50 + 2 * Math.sin(row / (5 + 6 * index)) + 0.01 * ((row * 7919) % 11)).toFixed(3), (40 + 3 * Math.cos(row / (5 + 6 * index))).toFixed(2)])].join(","));
+    lines.push([2 * row, ...tags.flatMap((_, index) => [50, (50 + (index === 1 ? size : 1) * 2 * Math.sin(row / (5 + 6 * index)) + 0.01 * ((row * 7919) % 11)).toFixed(3), (40 + 3 * Math.cos(row / (5 + 6 * index))).toFixed(2)])].join(","));
+  return lines.join("\n");
+}
+
+test("a file with the columns of many loops becomes a batch, and its work list has them all", async () => {
+  const tags = ["FIC-1", "TIC-2", "PIC-3"];
   await withPage("#/check", {}, async (page) => {
-    await choose(page, [file("Unit 7.csv", lines.join("\n"))]);
+    await choose(page, [file("Unit 7.csv", wideFile(tags))]);
     await page.getByRole("button", { name: "Check all loops of the file" }).click();
     await rows(page).nth(2).waitFor();
     const id = /#\/batches\/([^/?]+)\/check/.exec(page.url())[1];
@@ -204,5 +209,26 @@ test("a file with the columns of many loops becomes a batch, and its work list h
     await page.getByText("3 loops: 3 checked").waitFor();
     await page.getByRole("link", { name: "Work list of the loops" }).click();
     await rows(page).nth(2).waitFor();
+  });
+});
+
+test("a file that cannot be read says so in its row, before anything is checked", async () => {
+  await withPage("#/check", {}, async (page) => {
+    await choose(page, [file("FIC-101.csv", swinging(60)), file("only-pv.csv", "Time,PV\n0,1\n1,2\n2,3\n")]);
+    const row = (name) => page.getByRole("row").filter({ has: page.getByLabel(`Name of ${name}`) });
+    await row("only-pv").locator("td .error").filter({ hasText: /output/ }).first().waitFor();
+    assert.equal(await row("FIC-101").locator("td .error").filter({ hasText: /./ }).count(), 0);
+    assert.deepEqual(await accessibilityViolations(page), []);
+  });
+});
+
+test("units that the files name are the units of the answer", async () => {
+  const text = swinging(60).replace("PV", "PV [°C]").replace("OP", "OP [%]");
+  await withPage("#/check", {}, async (page) => {
+    await checked(page, [file("TIC-7.csv", text)]);
+    const { request } = await answerOf(page);
+    assert.deepEqual(request.units, { y: "°C", u: "%" });
+    await page.getByRole("link", { name: "TIC-7", exact: true }).first().click();
+    await page.getByRole("row", { name: /^Mean error .* °C$/ }).waitFor();
   });
 });

@@ -43,6 +43,15 @@ test("only what was given is sent", () => {
   assert.ok(!("cluster" in readCheck({ ...EMPTY, loops: [loop] }).request), "the service's default is not repeated");
 });
 
+test("units that all files name alike are the units of the check", () => {
+  const unitsOf = (...given: (object | undefined)[]) =>
+    readCheck({ ...EMPTY, loops: given.map((units, index) => ({ ...loopOfFile(`${index}.csv`, CSV), units: units as never })) }).request.units;
+  assert.deepEqual(unitsOf({ y: "degC", u: "%" }), { y: "degC", u: "%" });
+  assert.deepEqual(unitsOf({ y: "degC", u: "%" }, { y: "bar", u: "%" }), { u: "%" });
+  assert.equal(unitsOf({ y: "degC", u: "" }, undefined), undefined);
+  assert.equal(unitsOf({ y: "", u: "" }), undefined);
+});
+
 test("a request comes back from the form as it was, with members that no field shows", () => {
   const given = {
     name: "Unit 21",

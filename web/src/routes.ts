@@ -40,14 +40,18 @@ export interface CheckedBy {
 }
 
 /**
- * Loops in operation. `of`: what checked them; null: the form, filled with the loops of the job `from` if there is one. `loop`: the place of the loop whose page is shown; null: the work list. `list`: what is shown of that, by the
- * names of `LIST_PARTS`.
+ * Loops in operation. `of`: what checked them; null: the form, filled with the loops of the job `from` if there is one.
+ * `before`: an earlier batch to compare with. `loop`: the place of the loop whose page is shown; null: the work list.
+ * `other`: the place of a loop that is drawn with it.
+ * `list`: what is shown of that, by the names of `LIST_PARTS`.
  */
 export interface CheckRoute {
   screen: "check";
   of: CheckedBy | null;
   from: string | null;
+  before: string | null;
   loop: number | null;
+  other: number | null;
   list: ListView;
 }
 
@@ -79,18 +83,19 @@ export const addressOfJob = (job: string, screen: JobScreen): string =>
 
 /** The result of a check. */
 export const addressOfCheck = (id: string, kind: CheckedBy["kind"] = "job"): string =>
-  formatRoute({ screen: "check", of: { kind, id }, from: null, loop: null, list: WHOLE_LIST });
+  formatRoute({ screen: "check", of: { kind, id }, from: null, before: null, loop: null, other: null, list: WHOLE_LIST });
 
 export const sameCheck = (a: CheckedBy | null, b: CheckedBy | null): boolean => a?.kind === b?.kind && a?.id === b?.id;
 
 function checkRoute(of: CheckedBy | null, values: Record<string, string>): CheckRoute {
-  const { loop = "", from } = values;
+  const { from, before } = values;
+  const placeOf = (text = ""): number | null => (/^\d+$/.test(text) ? Number(text) : null);
   const list = Object.fromEntries(LIST_PARTS.map((part) => [part, values[part] ?? ""])) as unknown as ListView;
-  return { screen: "check", of, from: from || null, loop: /^\d+$/.test(loop) ? Number(loop) : null, list };
+  return { screen: "check", of, from: from || null, before: before || null, loop: placeOf(values["loop"]), other: placeOf(values["with"]), list };
 }
 
-function formatCheck({ of, from, loop, list }: CheckRoute): string {
-  const values = { ...(loop === null ? {} : { loop: String(loop) }), ...list, ...(from === null ? {} : { from }) };
+function formatCheck({ of, from, before, loop, other, list }: CheckRoute): string {
+  const values = { loop: `${loop ?? ""}`, with: `${other ?? ""}`, ...list, from: from ?? "", before: before ?? "" };
   const query = new URLSearchParams(Object.entries(values).filter(([, text]) => text !== "")).toString();
   const folder = of?.kind === "batch" ? "batches" : "jobs";
   return `#/${of === null ? "check" : `${folder}/${encodeURIComponent(of.id)}/check`}${query ? `?${query}` : ""}`;

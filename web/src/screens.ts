@@ -287,7 +287,7 @@ export function screens(
         if (isRangeRequest(job.request))
           return location.replace(formatRoute({ screen: "range", example: "", job: job.id }));
         if (isCheckRequest(job.request))
-          return location.replace(formatRoute({ screen: "check", of: null, from: job.id, loop: null, list: WHOLE_LIST }));
+          return location.replace(formatRoute({ screen: "check", of: null, from: job.id, before: null, loop: null, other: null, list: WHOLE_LIST }));
         if (job.request) fillForEntry(job.request, false);
       }
       if (route.screen === "example") {

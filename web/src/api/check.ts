@@ -1,7 +1,8 @@
 // Loops in operation: a check as a job, started, followed and stopped.
 import { call, sentenceOf, waitAfter } from "./client.ts";
 import { untilEnd } from "./events.ts";
-import type { Batch, BatchCheck, CheckContent, CheckJob, CheckLoop, CheckRequest, CheckResult, JobList, LoopCure, Progress, Units } from "./types.ts";
+import { newestOfBatch } from "./job_lists.ts";
+import type { Batch, BatchCheck, CheckContent, CheckJob, CheckLoop, CheckRequest, CheckResult, LoopCure, Progress, Units } from "./types.ts";
 import { isFinal } from "./types.ts";
 
 /** The same criterion as the service's for requests of POST /v1/jobs. */
@@ -20,11 +21,11 @@ export async function postCheckBatch(body: Blob, type: "text/csv" | "application
   return (await call("POST", `v1/batches?${query}`, body, { "Content-Type": type })).data as Batch;
 }
 
-/** What the loops of a batch say together; their units are those of its jobs. */
-export async function checkOfBatch(id: string): Promise<CheckContent> {
-  const batch = encodeURIComponent(id);
-  const [check, list] = await Promise.all([call("GET", `v1/batches/${batch}/check`), call("GET", `v1/jobs?batch=${batch}&limit=1`)]);
-  const units = (list.data as JobList).jobs[0]?.outline?.units;
+/** What the loops of a batch say together; their units are those of its jobs. `before`: an earlier batch to compare with. */
+export async function checkOfBatch(id: string, before: string | null = null): Promise<CheckContent> {
+  const since = before === null ? "" : `?before=${encodeURIComponent(before)}`;
+  const [check, job] = await Promise.all([call("GET", `v1/batches/${encodeURIComponent(id)}/check${since}`), newestOfBatch(id)]);
+  const units = job?.outline?.units;
   return { ...(check.data as BatchCheck), ...(units ? { units } : {}) };
 }
 

@@ -22,6 +22,10 @@ export async function listBatches(): Promise<Batch[]> {
   return ((await call("GET", "v1/batches?limit=20")).data as { batches: Batch[] }).batches;
 }
 
+/** One of its jobs, which says of which kind all are; undefined if there is none yet. */
+export const newestOfBatch = async (id: string): Promise<ListedJob | undefined> =>
+  (await nextJobs(`v1/jobs?batch=${encodeURIComponent(id)}&limit=1`)).jobs[0];
+
 export const getBatch = async (id: string): Promise<Batch> => (await call("GET", batchPath(id))).data as Batch;
 
 /** The jobs of a batch in their order, at most `max`. */

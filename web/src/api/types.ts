@@ -35,6 +35,7 @@ export type {
   LoopCheck,
   LoopCluster,
   LoopCure,
+  LoopChange,
   LoopRank,
   LoopTrend,
   Model,
@@ -129,8 +130,9 @@ export type CheckJob = Omit<Contract.Job, "request" | "result"> & { request?: Co
 type OwnParts = "excerpt" | "spectrum" | "autocorrelation" | "shape";
 /** A loop in the list of a check: in that of a batch it has no curves of its own, but its job. */
 export type ListedLoop = Omit<Contract.LoopCheck, OwnParts> & Partial<Pick<Contract.LoopCheck, OwnParts>> & { job?: string };
-/** What a check found: of a job with all curves, of a batch without them. */
-export type CheckContent = Pick<Contract.CheckResult, "clusters" | "cascades" | "ranking" | "units"> & { loops: ListedLoop[]; partial?: boolean; failed?: number };
+/** What a check found: of a job with all curves, of a batch without them. `changes`: since an earlier check, whose name is `since`. */
+export type CheckContent = Pick<Contract.CheckResult, "clusters" | "cascades" | "ranking" | "units"> &
+  Pick<Contract.BatchCheck, "changes"> & { loops: ListedLoop[]; partial?: boolean; failed?: number; since?: string };
 /** The result of a job about one loop or a range, or a combination of the answers to a slider. */
 export type Result = Partial<Omit<Contract.TuningResult, "controllers">> & { controllers: Entry[]; range?: Contract.Range };
 export type Job = Omit<Contract.Job, "request" | "result"> & { request?: TuningRequest; result?: Result };

@@ -2,7 +2,7 @@
 // its error.
 import type { CheckCurve, LoopCheck, LoopTrend } from "../api/types.ts";
 import type { Frame, Mark, Pane, Trace } from "../plot/frame.ts";
-import { verdictWords } from "../words/check.ts";
+import { secondsPer, valveSizeName, verdictWords } from "../words/check.ts";
 import { formatNumber, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { held } from "./record.ts";
@@ -16,9 +16,10 @@ export interface LoopFrames {
   autocorrelation: Frame | null;
 }
 
-export const loopFrames = (loop: LoopCheck, units: UnitNames): LoopFrames => ({
-  trend: trendFrame(loop, units, "trend"),
-  excerpt: trendFrame(loop, units, "excerpt"),
+/** `other`: a loop whose record is drawn below, on the same time axis. */
+export const loopFrames = (loop: LoopCheck, units: UnitNames, other: LoopCheck | null = null): LoopFrames => ({
+  trend: trendFrame(loop, units, "trend", other),
+  excerpt: trendFrame(loop, units, "excerpt", other),
   plane: planeFrame(loop, units),
   spectrum: spectrumFrame(loop, units),
   autocorrelation: autocorrelationFrame(loop, units),
@@ -29,57 +30,95 @@ const SPANS = {
   excerpt: { title: "Last periods", what: "the last periods, row by row", link: "last-periods" },
 } as const;
 
-/** `whole`: the samples are extremes of the measurement, between which the output moves too: it is not held. */
-function panesOf({ t, y, r, u }: LoopTrend, units: UnitNames, whole: boolean): Pane[] {
-  const setPoint: Trace[] = r ? [{ name: "set point", look: 2, ...held(t, r) }] : [];
-  return [
-    {
-      y: { kind: "linear", label: withUnit("y", units.y) },
-      traces: [{ name: "measurement", look: "data", x: t, y }, ...setPoint],
-      weight: 1.5,
-    },
-    {
-      y: { kind: "linear", label: withUnit("u", units.u) },
-      traces: [{ name: "output", look: "data", ...(whole ? { x: t, y: u } : held(t, u)) }],
-    },
-  ];
+/** Longer labels do not fit next to a low pane. */
+const LONGEST_LABEL = 16;
+
+/** "FIC101 PV (%)"; without the tag if that is too long. */
+function labelOf({ tag }: LoopCheck, name: string, unit: string): string {
+  const whole = withUnit(`${tag} ${name}`, unit);
+  return whole.length <= LONGEST_LABEL ? whole : withUnit(name, unit);
 }
 
-/** Measurement with set point over the output; null without rows. */
-export function trendFrame(loop: LoopCheck, units: UnitNames, span: "trend" | "excerpt"): Frame | null {
+const measurementPane = (loop: LoopCheck, { t, y, r }: LoopTrend, units: UnitNames): Pane => ({
+  y: { kind: "linear", label: labelOf(loop, "PV", units.y) },
+  traces: [{ name: "measurement", look: "data", x: t, y }, ...(r ? [{ name: "set point", look: 2, ...held(t, r) } satisfies Trace] : [])],
+  weight: 1.5,
+});
+
+/** Long records are read in hours. */
+const LONG_S = 3 * 3600;
+
+/** The unit of the time axis, and how many units of the record it has. */
+function timeAxis({ trend: { t } }: LoopCheck, { time }: UnitNames): { unit: string; size: number } {
+  const second = secondsPer(time);
+  const isLong = second < 3600 && (t[t.length - 1]! - t[0]!) * second > LONG_S;
+  return isLong ? { unit: "h", size: 3600 / second } : { unit: time, size: 1 };
+}
+
+const scaled = (trend: LoopTrend, size: number, shift = 0): LoopTrend => ({ ...trend, t: trend.t.map((at) => (at + shift) / size) });
+
+/** When t = 0 was, in the unit of the times; 0 if the record has no date. */
+const zeroOf = ({ shape, trend }: LoopCheck, units: UnitNames): number =>
+  shape.dated ? shape.from / secondsPer(units.time) - (trend.t[0] ?? 0) : 0;
+
+/** Measurement with set point over the output, and over the measurement of `other`; null without rows. */
+export function trendFrame(loop: LoopCheck, units: UnitNames, span: "trend" | "excerpt", other: LoopCheck | null = null): Frame | null {
   const { title, what, link } = SPANS[span];
-  const trend = loop[span];
-  if (trend.t.length < 2) return null;
+  if (loop[span].t.length < 2) return null;
+  const { unit, size } = timeAxis(loop, units);
+  const trend = scaled(loop[span], size);
+  const { t, u } = trend;
+  const below = other && scaled(other[span], size, loop.shape.dated && other.shape.dated ? zeroOf(other, units) - zeroOf(loop, units) : 0);
   return {
     title,
-    description: `${loop.tag}, ${what}. ${verdictWords(loop.cause.verdict)}.`,
-    x: { kind: "linear", label: withUnit("time", units.time) },
-    panes: panesOf(trend, units, span === "trend"),
+    description: `${loop.tag}, ${what}. ${verdictWords(loop.cause.verdict)}.${other ? ` Below: ${other.tag}, ${verdictWords(other.cause.verdict)}.` : ""}`,
+    x: { kind: "linear", label: withUnit("time", unit), ...(below ? { range: [t[0]!, t[t.length - 1]!] } : {}) },
+    panes: [
+      measurementPane(loop, trend, units),
+      {
+        y: { kind: "linear", label: labelOf(loop, "OP", units.u) },
+        // The samples of the whole record are extremes of the measurement, between which the output moves too: it is not held.
+        traces: [{ name: "output", look: "data", ...(span === "trend" ? { x: t, y: u } : held(t, u)) }],
+      },
+      ...(other && below && below.t.length > 1 ? [measurementPane(other, below, units)] : []),
+    ],
     // The picture below has the same lines.
     ownLegend: span === "trend",
     link,
-    cursorLabel: withUnit("time", units.time),
+    cursorLabel: withUnit("time", unit),
     cursorKind: "linear",
     fileName: link,
   };
 }
 
+/** The band in which the output moves and the valve does not, about the middle of the output. */
+function valveBand({ cause, excerpt }: LoopCheck, units: UnitNames): Mark[] {
+  const u = excerpt.u.filter((value): value is number => value !== null);
+  if (!cause.size || u.length === 0) return [];
+  const middle = (Math.min(...u) + Math.max(...u)) / 2;
+  const label = `${valveSizeName(cause.verdict).toLowerCase()} ${formatNumber(cause.size)}${units.u ? ` ${units.u}` : ""}`;
+  return [{ kind: "band", from: middle - cause.size / 2, to: middle + cause.size / 2, label }];
+}
+
 /** The path of the loop in the plane of output and measurement: a sticking valve draws a parallelogram there. */
-function planeFrame({ tag, excerpt }: LoopCheck, units: UnitNames): Frame | null {
-  const { t, y, u } = excerpt;
+function planeFrame(loop: LoopCheck, units: UnitNames): Frame | null {
+  const { tag, excerpt } = loop;
+  const { unit, size } = timeAxis(loop, units);
+  const { t, y, u } = scaled(excerpt, size);
   if (t.length < 2) return null;
   return {
     title: "Measurement against output",
     description: `${tag}: PV against OP over the last periods.`,
-    x: { kind: "linear", label: withUnit("u, output", units.u) },
+    x: { kind: "linear", label: withUnit(`${tag} OP`, units.u) },
     panes: [
       {
-        y: { kind: "linear", label: withUnit("y, measurement", units.y) },
-        traces: [{ name: "y", look: "data", x: u, y, parameter: t }],
+        y: { kind: "linear", label: labelOf(loop, "PV", units.y) },
+        traces: [{ name: "PV", look: "data", x: u, y, parameter: t }],
+        marks: valveBand(loop, units),
       },
     ],
     link: "measurement-output",
-    cursorLabel: withUnit("time", units.time),
+    cursorLabel: withUnit("time", unit),
     cursorKind: "linear",
     fileName: "measurement-against-output",
   };

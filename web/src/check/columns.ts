@@ -1,12 +1,13 @@
 // The work list of a check as data: its rows in order, its columns with their figures, and which rows are shown.
-import type { CheckContent, ListedLoop, LoopRank } from "../api/types.ts";
+import type { CheckContent, ListedLoop, LoopChange, LoopRank } from "../api/types.ts";
 import type { ListView } from "../routes.ts";
 import type { ExplainedName } from "../words/explained.ts";
 import { orderOf } from "../words/comparison.ts";
 import { sorted } from "../words/job_list.ts";
+import { csvText } from "../plot/export.ts";
 import { DASH, formatNumber, formatShare, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
-import { actionWords, confidenceWords, effortWords, estimate, ownerWords, verdictOrder, verdictWords } from "../words/check.ts";
+import { actionWords, confidenceWords, effortWords, estimate, ownerWords, significance, verdictOrder, verdictWords } from "../words/check.ts";
 
 /** A loop with its place in the work list. */
 export interface WorkRow {
@@ -16,6 +17,8 @@ export interface WorkRow {
   rank: number;
   loop: ListedLoop;
   standing: LoopRank;
+  /** Since the earlier check; undefined: it is not compared, or the earlier check does not have it. */
+  change: LoopChange | undefined;
 }
 
 export interface WorkFigure {
@@ -37,8 +40,10 @@ export interface WorkColumn {
   value(row: WorkRow): number | string | null;
 }
 
-export const workRows = ({ loops, ranking }: CheckContent): WorkRow[] =>
-  ranking.map((standing, index) => ({ place: standing.loop, rank: index + 1, loop: loops[standing.loop]!, standing }));
+export function workRows({ loops, ranking, changes = [] }: CheckContent): WorkRow[] {
+  const changeOf = new Map(changes.map(({ loop, change }) => [loop, change]));
+  return ranking.map((standing, index) => ({ place: standing.loop, rank: index + 1, loop: loops[standing.loop]!, standing, change: changeOf.get(standing.loop) }));
+}
 
 const NO_OSCILLATION = "No regular oscillation was found.";
 
@@ -96,12 +101,29 @@ const atLimit: Read = ({ loop }) => loop.service.saturated_low + loop.service.sa
 const share = (value: number): string => formatShare(value);
 const shortNumber = (value: number): string => formatNumber(value);
 
-/** The columns after the loop's name and its trend. Money has one if a loop has a weight. */
-export function workColumns(rows: readonly WorkRow[], units: UnitNames): WorkColumn[] {
+const NOT_BEFORE = "The earlier check has no loop with this name.";
+
+/** What has changed since an earlier check. */
+const CHANGES: readonly WorkColumn[] = [
+  wordsColumn("before", "Cause before", ({ change }) => (change ? verdictWords(change.before) : DASH), ({ change }) => (change ? verdictOrder(change.before) : null)),
+  figures("error", "Error now/before", "error_change", ({ change }) => change?.variability_ratio, shortNumber, ({ change }) => (change ? (change.why_null?.["variability_ratio"] ?? "") : NOT_BEFORE)),
+  { ...wordsColumn("significant", "Significant", ({ change }) => significance(change), ({ change }) => (change ? change.likelihood : null)), about: "significant" },
+];
+
+/** Whether a loop has something to say in a column. */
+const SAYS = {
+  automatic: ({ loop }: WorkRow) => loop.service.automatic !== null,
+  limit: (row: WorkRow) => (atLimit(row) ?? 0) > 0,
+  record: (row: WorkRow) => recordOrder(row) > 0,
+};
+
+/** The columns after the loop's name and its trend. Money has one if a loop has a weight; changes if `since` names an earlier check. */
+export function workColumns(rows: readonly WorkRow[], units: UnitNames, since = ""): WorkColumn[] {
   const why = (name: string) => (row: WorkRow) => row.standing.why_null?.[name] ?? "";
   const weighed = rows.some(({ standing }) => typeof standing.money === "number");
   const columns: WorkColumn[] = [
     { ...wordsColumn("cause", "Cause", causeText, causeOrder), about: "cause" },
+    ...(since === "" ? [] : CHANGES),
     wordsColumn("action", "What to do", ({ loop }) => actionWords(loop.action.code)),
     wordsColumn("owner", "Owner", ({ loop }) => ownerWords(loop.action.owner)),
     figures("gain", "Gain (%)", "mending_gain", ({ standing }) => standing.share, estimate, why("share")),
@@ -112,8 +134,9 @@ export function workColumns(rows: readonly WorkRow[], units: UnitNames): WorkCol
     figures("limit", "At a limit (%)", "at_limit", atLimit, share),
     wordsColumn("record", "Record", recordText, recordOrder),
   ];
-  // Without a column of the mode in any record there is no share in automatic.
-  return columns.filter(({ id, value }) => id !== "automatic" || rows.some((row) => value(row) !== null));
+  // A figure that no loop has, such as the share in automatic without any column of the mode, takes no room.
+  const idle = (["automatic", "limit", "record"] as const).filter((id) => !rows.some((row) => SAYS[id](row)));
+  return columns.filter(({ id }) => !idle.some((other) => other === id));
 }
 
 export const nameColumn = wordsColumn("loop", "Loop", ({ loop }) => loop.tag);
@@ -148,10 +171,8 @@ export function counts(rows: readonly WorkRow[], code: (row: WorkRow) => string,
 export const mendedBefore = ({ standing }: WorkRow, rows: readonly WorkRow[]): WorkRow | null =>
   rows.find(({ place }) => place === standing.after) ?? null;
 
-const quoted = (text: string): string => (/[",;\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-
 /** For a spreadsheet: figures without a sign that it would not read. */
-function csvText(row: WorkRow, column: WorkColumn): string {
+function cellText(row: WorkRow, column: WorkColumn): string {
   const value = column.value(row);
   if (column.words) return column.figure(row).text;
   return value === null ? "" : column.figure(row).text.replaceAll("−", "-");
@@ -163,9 +184,9 @@ export function workCsv(rows: readonly WorkRow[], columns: readonly WorkColumn[]
   const lines = rows.map((row) => [
     String(row.rank),
     row.loop.tag,
-    ...columns.map((column) => csvText(row, column)),
+    ...columns.map((column) => cellText(row, column)),
     mendedBefore(row, all)?.loop.tag ?? "",
     row.loop.action.detail,
   ]);
-  return [head, ...lines].map((line) => `${line.map(quoted).join(",")}\r\n`).join("");
+  return csvText([head, ...lines]);
 }

@@ -1,8 +1,9 @@
-// The last checks, to open again: jobs, and batches with a job for each loop.
-import { listBatches, listJobs } from "../api/job_lists.ts";
+// The last checks, jobs and batches: to open again, or to compare with.
+import { listBatches, listJobs, newestOfBatch } from "../api/job_lists.ts";
 import type { Batch, ListedJob } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { addressOfCheck, formatRoute } from "../routes.ts";
+import type { CheckedBy } from "../routes.ts";
 import { verdictWords } from "../words/check.ts";
 import { age, shortPlant } from "../words/job_list.ts";
 import { counted } from "../words/range.ts";
@@ -10,28 +11,50 @@ import { counted } from "../words/range.ts";
 const MOST = 5;
 
 export interface EarlierCheck {
-  address: string;
+  of: CheckedBy;
   name: string;
   words: string;
 }
 
-/** One for each job, and for each batch that has jobs in the list. */
-export function earlierOf(jobs: readonly ListedJob[], batches: readonly Batch[], now: number): EarlierCheck[] {
-  const found = new Map<string, EarlierCheck>();
-  for (const job of jobs) {
-    const batch = batches.find(({ id }) => id === job.batch);
+/** A batch, and one of its jobs. */
+export type BatchOfJobs = readonly [Batch, ListedJob | undefined];
+
+export const nameOfBatch = ({ id, name }: Pick<Batch, "id" | "name">): string => name || `Batch ${id.slice(0, 8)}`;
+
+/** A check of one loop is called after it. */
+function nameOfJob({ id, name, outline }: ListedJob): string {
+  const { loops, tag } = outline!.check!;
+  return name || (loops === 1 && tag) || `Check ${id.slice(0, 8)}`;
+}
+
+function jobWords({ outline, created_at }: ListedJob, now: number): string {
+  const { loops, verdict } = outline!.check!;
+  return [shortPlant(outline), loops !== 1 && verdict && verdictWords(verdict).toLowerCase(), age(created_at, now)].filter(Boolean).join(", ");
+}
+
+/** The checks among jobs and batches, the newest first. */
+export function earlierOf(jobs: readonly ListedJob[], batches: readonly BatchOfJobs[], now: number): EarlierCheck[] {
+  const found = [
     // The search looks in names too.
-    if (!job.outline?.check || found.has(job.batch ?? job.id) || (job.batch && !batch)) continue;
-    const { loops, verdict } = job.outline.check;
-    const first = [shortPlant(job.outline), loops !== 1 && verdict && verdictWords(verdict).toLowerCase(), age(job.created_at, now)];
-    found.set(
-      job.batch ?? job.id,
-      batch
-        ? { address: addressOfCheck(batch.id, "batch"), name: batch.name || `Batch ${batch.id.slice(0, 8)}`, words: `${counted(batch.total, "loop")}, ${age(batch.created_at, now)}` }
-        : { address: addressOfCheck(job.id), name: job.name || `Check ${job.id.slice(0, 8)}`, words: first.filter(Boolean).join(", ") },
-    );
+    ...jobs
+      .filter(({ outline }) => outline?.check)
+      .map((job) => ({ at: job.created_at, of: { kind: "job", id: job.id } as const, name: nameOfJob(job), words: jobWords(job, now) })),
+    ...batches
+      .filter(([, job]) => job?.outline?.check)
+      .map(([batch]) => ({ at: batch.created_at, of: { kind: "batch", id: batch.id } as const, name: nameOfBatch(batch), words: `${counted(batch.total, "loop")}, ${age(batch.created_at, now)}` })),
+  ];
+  return found.sort((a, b) => Date.parse(b.at) - Date.parse(a.at)).map(({ of, name, words }) => ({ of, name, words }));
+}
+
+/** Without the lists the screen still works: none then. */
+export async function lastChecks(): Promise<EarlierCheck[]> {
+  try {
+    const [{ jobs }, batches] = await Promise.all([listJobs("check"), listBatches()]);
+    const ofBatches = await Promise.all(batches.map(async (batch): Promise<BatchOfJobs> => [batch, await newestOfBatch(batch.id)]));
+    return earlierOf(jobs, ofBatches, Date.now());
+  } catch {
+    return [];
   }
-  return [...found.values()].slice(0, MOST);
 }
 
 /** A card that is hidden while there is none. */
@@ -47,13 +70,33 @@ export function earlierChecks(): { element: HTMLElement; look(): Promise<void> }
   return {
     element,
     async look() {
-      // Without the list the form still works.
-      const [{ jobs }, batches] = await Promise.all([listJobs("check"), listBatches()]).catch(() => [{ jobs: [] }, []] as const);
-      const checks = earlierOf(jobs, batches, Date.now());
+      const checks = (await lastChecks()).slice(0, MOST);
       element.hidden = checks.length === 0;
       list.replaceChildren(
-        ...checks.map(({ address, name, words }) => h("li", {}, h("a", { href: address }, name), h("span", { class: "hint" }, words))),
+        ...checks.map(({ of, name, words }) => h("li", {}, h("a", { href: addressOfCheck(of.id, of.kind) }, name), h("span", { class: "hint" }, words))),
       );
+    },
+  };
+}
+
+/** The earlier check with which a batch is compared. */
+export interface BeforeChoice {
+  element: HTMLElement;
+  /** Batches to choose from; hidden if there is none. `since`: the name of the chosen one, which may be older than these. */
+  offer(checks: readonly EarlierCheck[], chosen: string | null, since: string): void;
+}
+
+export function beforeChoice(onChoose: (before: string | null) => void): BeforeChoice {
+  const select = h("select", { id: "work-before", onchange: () => onChoose(select.value || null) });
+  const element = h("span", { class: "work-before", hidden: true }, h("label", { for: select.id }, "Compare with"), select);
+  return {
+    element,
+    offer(checks, chosen, since) {
+      const known = checks.map(({ of, name, words }) => [of.id, `${name}, ${words}`] as const);
+      const older = chosen === null || known.some(([id]) => id === chosen) ? [] : [[chosen, since || "an earlier check"] as const];
+      const choices = [["", "no earlier check"] as const, ...known, ...older];
+      select.replaceChildren(...choices.map(([id, name]) => h("option", { value: id, selected: id === (chosen ?? "") }, name)));
+      element.hidden = choices.length === 1;
     },
   };
 }

@@ -18,13 +18,20 @@ export interface Filters {
 const sureness = (verdict: string, rows: readonly WorkRow[]): Confidence =>
   rows.some(({ loop }) => loop.cause.verdict === verdict && loop.cause.confidence !== "open") ? "sure" : "open";
 
-export function workFilters(onChange: (change: Partial<ListView>) => void): Filters {
+/** `before`: the choice of an earlier check. */
+export function workFilters(onChange: (change: Partial<ListView>) => void, before: HTMLElement): Filters {
   let causes = new Map<string, HTMLButtonElement>();
   const list = h("div", { class: "causes", role: "group", "aria-label": "Causes" });
   const owner = h("select", { id: "work-owner", onchange: () => onChange({ owner: owner.value }) });
   const text = h("input", { type: "text", id: "work-find", autocomplete: "off", spellcheck: "false", placeholder: "part of its name" });
   text.addEventListener("input", () => onChange({ text: text.value.trim() }));
   const found = h("p", { class: "hint", role: "status" });
+  const all = h("button", { type: "button", class: "quiet", hidden: true, onclick: showAll }, "Show all");
+
+  function showAll(): void {
+    text.focus();
+    onChange({ cause: "", owner: "", text: "" });
+  }
 
   function button(cause: string, content: (Node | string)[]): HTMLButtonElement {
     return h("button", { type: "button", class: "quiet", "aria-pressed": "false", onclick: () => onChange({ cause }) }, content);
@@ -42,7 +49,9 @@ export function workFilters(onChange: (change: Partial<ListView>) => void): Filt
         owner,
         h("label", { for: "work-find" }, "Loop"),
         text,
+        before,
         found,
+        all,
       ),
     ),
     build(rows) {
@@ -63,11 +72,12 @@ export function workFilters(onChange: (change: Partial<ListView>) => void): Filt
         ...owners.map(([code, count]) => h("option", { value: code }, `${ownerWords(code)} (${count})`)),
       );
     },
-    show(view, shown, all) {
+    show(view, shown, count) {
       for (const [cause, element] of causes) element.setAttribute("aria-pressed", String(cause === view.cause));
       owner.value = view.owner;
       if (text.value.trim() !== view.text) text.value = view.text;
-      const words = shown === all ? "" : `${shown} of ${all} loops`;
+      all.hidden = shown === count;
+      const words = shown === count ? "" : `${shown} of ${count} loops`;
       if (found.textContent !== words) found.textContent = words;
     },
   };

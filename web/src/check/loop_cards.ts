@@ -3,7 +3,7 @@ import type { CheckContent } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import type { Child } from "../dom.ts";
 import { explained } from "../reach/explanation.ts";
-import { actionWords, effortWords, gainWords, loopFigures, ownerWords, periodText, toneOf, verdictWords } from "../words/check.ts";
+import { actionWords, changeWords, effortWords, gainWords, loopFigures, ownerWords, periodText, toneOf, verdictWords } from "../words/check.ts";
 import type { LoopFigure, LoopFigures } from "../words/check.ts";
 import { figureUnit } from "../words/figure_units.ts";
 import { DASH, formatNumber, formatShare, withMinus, withUnit } from "../words/numbers.ts";
@@ -46,11 +46,13 @@ function neighbours(shown: LoopShown): HTMLElement[] {
 }
 
 export function causeCard(shown: LoopShown): HTMLElement {
-  const { cause, quality } = shown.row.loop;
+  const { content, row } = shown;
+  const { cause, quality } = row.loop;
   const evidence = cause.evidence.map(({ detail }) => h("li", {}, withMinus(detail)));
   const others = cause.alternatives.map((verdict) => verdictWords(verdict)).join(", ");
   const heading = h("h2", { id: uniqueId("cause") }, causeMark(cause));
-  const remarks = quality.remarks.map(({ detail }) => h("li", {}, withMinus(detail)));
+  // The reason for an open cause may be one of them.
+  const remarks = quality.remarks.filter(({ detail }) => detail !== cause.why_open).map(({ detail }) => h("li", {}, withMinus(detail)));
   const relations = neighbours(shown);
   const part = (name: string, items: HTMLElement[]): Child => (items.length > 0 ? [h("h3", {}, name), h("ul", {}, items)] : "");
   return h(
@@ -60,6 +62,7 @@ export function causeCard(shown: LoopShown): HTMLElement {
     cause.why_open ? h("p", {}, withMinus(cause.why_open)) : "",
     evidence.length > 0 ? h("ul", {}, evidence) : "",
     others ? h("p", {}, `Not excluded: ${others}.`) : "",
+    row.change ? part(`Since ${content.since}`, [h("li", {}, changeWords(row.change))]) : "",
     part("About the record", remarks),
     part("Other loops", relations),
   );

@@ -10,12 +10,18 @@ export interface CheckProgress {
 /** Time between two spoken updates. */
 const SPEAK_EVERY_MS = 5000;
 
-export function checkProgress(announce: (sentence: string) => void, onCancel: () => void): CheckProgress {
+export function checkProgress(announce: (sentence: string) => void, onCancel: () => Promise<void>): CheckProgress {
   let spoken = 0;
   const title = h("h2", { id: "check-progress" }, "Waiting for its turn");
   const bar = h("progress", { max: 1, value: 0, "aria-labelledby": "check-progress" });
   const message = h("p", {});
-  const cancel = h("button", { type: "button", onclick: onCancel }, "Cancel");
+  const cancel = h("button", { type: "button", onclick: () => void stop() }, "Cancel");
+
+  async function stop(): Promise<void> {
+    cancel.textContent = "Stopping...";
+    await onCancel();
+    cancel.textContent = "Cancel";
+  }
 
   return {
     element: h("section", { class: "card progress", "aria-labelledby": "check-progress" }, title, bar, message, h("div", { class: "actions" }, cancel)),

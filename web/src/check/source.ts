@@ -9,6 +9,7 @@ import type { Batch, CheckContent, CheckJob, CheckLoop, CheckRequest, LoopCheck,
 import { isFinal } from "../api/types.ts";
 import type { CheckedBy } from "../routes.ts";
 import { counted } from "../words/range.ts";
+import { nameOfBatch } from "./earlier.ts";
 import { linesOf } from "./request.ts";
 import type { CheckOrder } from "./request.ts";
 
@@ -40,6 +41,8 @@ export interface WholeLoop {
 
 export interface CheckSource {
   cancel(): Promise<void>;
+  /** Adds what has changed since an earlier batch; null: nothing. A job is not compared. */
+  compare(before: string | null): void;
   /** A loop by its place in the list. */
   whole(place: number): Promise<WholeLoop>;
   stop(): void;
@@ -100,6 +103,7 @@ function jobSource(id: string, { onState, onTrouble }: CheckFollower): CheckSour
   const stop = followCheck(id, { onJob: take, onProgress: (progress) => job && onState(stateOf({ ...job, progress })), onTrouble });
   return {
     stop,
+    compare() {},
     cancel: async () => void (await cancelJob(id)),
     whole: (place) =>
       Promise.resolve({
@@ -115,6 +119,8 @@ const LOOK_AGAIN_MS = 1000;
 function batchSource(id: string, { onState, onTrouble }: CheckFollower): CheckSource {
   let stopped = false;
   let found: CheckContent | null = null;
+  let last: Batch | null = null;
+  let before: string | null = null;
 
   function stateOfBatch(batch: Batch, content: CheckContent | null): CheckState {
     const { succeeded, failed, cancelled } = batch.counts;
@@ -138,12 +144,25 @@ function batchSource(id: string, { onState, onTrouble }: CheckFollower): CheckSo
       const batch = await getBatch(id);
       if (hasEnded(batch)) found = { ...(await checkOfBatch(id)), partial: batch.counts.cancelled > 0 };
       if (stopped) return null;
+      last = batch;
       onTrouble("");
       onState(stateOfBatch(batch, found));
+      if (found && before !== null) void addChanges(found, before);
       return hasEnded(batch) ? null : LOOK_AGAIN_MS;
     } catch (error) {
       if (!stopped) onTrouble(sentenceOf(error));
       return waitAfter(error);
+    }
+  }
+
+  async function addChanges({ changes: _changes, since: _since, ...content }: CheckContent, earlier: string | null): Promise<void> {
+    try {
+      const [{ changes = [] }, named] = earlier === null ? [{}, null] : await Promise.all([checkOfBatch(id, earlier), getBatch(earlier)]);
+      if (stopped || earlier !== before) return;
+      found = named === null ? content : { ...content, changes, since: nameOfBatch(named) };
+      onState(stateOfBatch(last!, found));
+    } catch (error) {
+      if (!stopped && earlier === before) onTrouble(sentenceOf(error));
     }
   }
 
@@ -154,6 +173,11 @@ function batchSource(id: string, { onState, onTrouble }: CheckFollower): CheckSo
   return {
     stop() {
       stopped = true;
+    },
+    compare(earlier) {
+      if (earlier === before) return;
+      before = earlier;
+      if (found) void addChanges(found, earlier);
     },
     cancel: async () => void (await cancelBatch(id)),
     async whole(place) {

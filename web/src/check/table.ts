@@ -50,8 +50,11 @@ export function workTable(onSort: (column: string) => void): WorkTable {
   const cue = h("p", { class: "hint", hidden: true });
   body.addEventListener("keydown", moveFocus);
   scroller.addEventListener("scroll", addAhead, { passive: true });
-  // On paper all of them are in view.
-  window.addEventListener("beforeprint", () => addTo(shown.length));
+  // On paper all of them are in view, with their footnotes.
+  window.addEventListener("beforeprint", () => {
+    addTo(shown.length);
+    why.open = true;
+  });
 
   function elementOf(row: WorkRow): HTMLTableRowElement {
     const known = elements.get(row.place);

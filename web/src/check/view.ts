@@ -1,6 +1,7 @@
 // The screen Check: records of loops in operation in, the work list of the plant out, and a page for each loop.
 import { getCheck, isCheckRequest } from "../api/check.ts";
 import { sentenceOf } from "../api/client.ts";
+import { newest } from "../api/latest.ts";
 import type { CheckContent, IdentifyRequest } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
@@ -14,7 +15,7 @@ import { unitNames } from "../words/numbers.ts";
 import { counted } from "../words/range.ts";
 import { workRows } from "./columns.ts";
 import type { WorkRow } from "./columns.ts";
-import { earlierChecks } from "./earlier.ts";
+import { beforeChoice, earlierChecks, lastChecks } from "./earlier.ts";
 import { checkForm } from "./form.ts";
 import type { LoopShown } from "./loop_cards.ts";
 import { loopView } from "./loop_view.ts";
@@ -38,7 +39,7 @@ export interface CheckEvents {
 }
 
 const TITLE = "Check loops in operation";
-const EMPTY: CheckRoute = { screen: "check", of: null, from: null, loop: null, list: WHOLE_LIST };
+const EMPTY: CheckRoute = { screen: "check", of: null, from: null, before: null, loop: null, other: null, list: WHOLE_LIST };
 
 /** How many loops there are, and which are missing. */
 function aboutWords({ partial, failed }: CheckContent, size: string): string {
@@ -66,12 +67,26 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
   const report = reportLink();
   const tools = h("p", { class: "actions check-tools" }, again, fresh, report.element, save);
   const form = checkForm(errors, { onCheck: () => void send(), onExample: () => void tryExample() });
-  const progress = checkProgress(announce, () => void source?.cancel().catch(complain));
-  const list = workList(announce, (view) => {
-    route = { ...route, list: view };
+  const progress = checkProgress(announce, async () => source?.cancel().catch(complain));
+  const before = beforeChoice((batch) => {
+    route = { ...route, before: batch };
     events.onList(route);
+    source?.compare(batch);
   });
-  const loop = loopView(announce);
+  const list = workList(
+    announce,
+    (view) => {
+      route = { ...route, list: view };
+      events.onList(route);
+    },
+    before.element,
+  );
+  const loop = loopView(announce, (other) => {
+    route = { ...route, other };
+    events.onList(route);
+    void drawWith(other);
+  });
+  const beginWith = newest();
   const earlier = earlierChecks();
   const entry = h("div", { class: "check-entry" }, errors.summary, form.element, earlier.element);
   const parts = [entry, progress.element, list.element, loop.element];
@@ -84,7 +99,7 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
   );
 
   const content = (): CheckContent | null => state?.content ?? null;
-  const addressOf = (place: number): string => formatRoute({ ...route, loop: place });
+  const addressOf = (place: number): string => formatRoute({ ...route, loop: place, other: null });
 
   async function send(): Promise<void> {
     errors.clear();
@@ -120,16 +135,25 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
   }
 
   function take(next: CheckState): void {
-    const first = content() === null;
+    const known = content();
     state = next;
     const found = content();
-    if (found && first) {
+    if (found && found !== known) {
       list.show(found, unitNames(found.units), addressOf);
       list.setView(route.list);
+      void offerBefore(found);
     }
-    if (first) menu.show("v1/jobs", next.request);
+    if (!known) menu.show("v1/jobs", next.request);
     show();
-    if (found && first) announce(`${counted(found.loops.length, "loop")} checked. ${list.sentence()}`);
+    if (found && !known) announce(`${counted(found.loops.length, "loop")} checked. ${list.sentence()}`);
+  }
+
+  /** Only batches are compared. */
+  async function offerBefore(found: CheckContent): Promise<void> {
+    const { of } = route;
+    const checks = of?.kind === "batch" ? await lastChecks() : [];
+    if (content() !== found) return;
+    before.offer(checks.filter((check) => check.of.kind === "batch" && !sameCheck(check.of, of)), route.before, found.since ?? "");
   }
 
   function follow(of: CheckedBy): void {
@@ -174,11 +198,22 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
   function showLoop(found: CheckContent, row: WorkRow): void {
     const shown: LoopShown = { content: found, row, units: unitNames(found.units), address: addressOf };
     const isShown = (): boolean => content() === found && route.loop === row.place;
-    loop.show(shown, { order: list.order(), list: formatRoute({ ...route, loop: null }) });
+    loop.show(shown, { order: list.order(), list: formatRoute({ ...route, loop: null, other: null }) });
     source?.whole(row.place).then(
-      (whole) => isShown() && loop.complete(shown, { ...whole, steps: stepsOf(row, whole) }),
+      (whole) => {
+        if (!isShown()) return;
+        loop.complete(shown, { ...whole, steps: stepsOf(row, whole) });
+        if (route.other !== null && found.loops[route.other]) void drawWith(route.other);
+      },
       (error: unknown) => isShown() && complain(error),
     );
+  }
+
+  async function drawWith(place: number | null): Promise<void> {
+    const from = route;
+    const isNewest = beginWith();
+    const other = place === null ? null : await source?.whole(place).catch(complain);
+    if (isNewest() && route === from) loop.drawWith(other?.loop ?? null, place);
   }
 
   function showHead(tag: string): void {
@@ -235,7 +270,7 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
       loop.dispose();
     },
     open(next) {
-      const before = route;
+      const last = route;
       route = next;
       say("");
       if (next.of !== null && !sameCheck(next.of, followed)) follow(next.of);
@@ -243,9 +278,10 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
         void earlier.look();
         if (next.from !== null) void fill(next.from).catch(complain);
       }
+      if (next.of !== null) source?.compare(next.before);
       list.setView(next.list);
       show();
-      if (element.isConnected) arrive(before);
+      if (element.isConnected) arrive(last);
     },
   };
 }

@@ -26,14 +26,14 @@ export interface WorkList {
   save(name: string): void;
 }
 
-/** `onView`: the user sorted or filtered; the address follows. */
-export function workList(announce: (sentence: string) => void, onView: (view: ListView) => void): WorkList {
+/** `onView`: the user sorted or filtered; the address follows. `before`: the choice of an earlier check. */
+export function workList(announce: (sentence: string) => void, onView: (view: ListView) => void, before: HTMLElement): WorkList {
   let rows: WorkRow[] = [];
   let columns: WorkColumn[] = [];
   let view: ListView | null = null;
   let shown: WorkRow[] = [];
   let addressOf: LoopAddress = () => "";
-  const filters = workFilters((part) => change({ ...view!, ...part }));
+  const filters = workFilters((part) => change({ ...view!, ...part }), before);
   const table = workTable(sortBy);
   const periods = h("section", { class: "card", "aria-labelledby": "check-periods" });
   const cascades = h("section", { class: "card", "aria-labelledby": "check-cascades" });
@@ -85,7 +85,7 @@ export function workList(announce: (sentence: string) => void, onView: (view: Li
     show(content, units, address) {
       addressOf = address;
       rows = workRows(content);
-      columns = workColumns(rows, units);
+      columns = workColumns(rows, units, content.since);
       filters.build(rows);
       table.build(rows, columns, address);
       const map = periodMap(content, address);

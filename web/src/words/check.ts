@@ -1,5 +1,5 @@
 // The check of loops in operation in words: causes, actions, owners, and the figures of a loop.
-import type { CheckLoop, ListedLoop, LoopCheck, LoopRank } from "../api/types.ts";
+import type { CheckLoop, ListedLoop, LoopChange, LoopCheck, LoopRank } from "../api/types.ts";
 import type { ExplainedName } from "./explained.ts";
 import { figureUnit } from "./figure_units.ts";
 import type { MeasuredType } from "./figure_units.ts";
@@ -74,6 +74,17 @@ export const verdictOrder = (verdict: string): number => {
   const at = Object.keys(VERDICTS).indexOf(verdict);
   return at < 0 ? Object.keys(VERDICTS).length : at;
 };
+
+/** Whether chance explains a change of the error. */
+export const significance = (change: LoopChange | undefined): string => (!change || change.likelihood === null ? DASH : change.significant ? "yes" : "no");
+
+/** What has changed in a loop since an earlier check. */
+export function changeWords(change: LoopChange): string {
+  const { before, now, variability_ratio: ratio, significant, why_null } = change;
+  const cause = before === now ? "The cause was the same." : `The cause was: ${verdictWords(before)}.`;
+  if (ratio === null) return `${cause} ${why_null?.["variability_ratio"] ?? ""}`.trim();
+  return `${cause} The standard deviation of the error is ${formatNumber(ratio)} times that of then; ${significant ? "chance does not explain this" : "chance may explain this"}.`;
+}
 
 /** The colour of a verdict: "open" has none. Text and shape say the same. */
 export type Tone = "good" | "bad" | "open";
@@ -172,7 +183,7 @@ function recordRows({ quality }: ListedLoop, units: UnitNames): LoopFigure[] {
   const step = (name: "y_step" | "u_step"): string => (quality[name] === 0 ? "" : figureUnit("CheckedRecord", name, units));
   return new Rows(units, "CheckedRecord", undefined)
     .add("Rows", null, "rows", quality.rows, String)
-    .add("Duration", null, "duration", quality.duration)
+    .add("Duration", null, "duration", secondsPer(units.time) * quality.duration, timeWords, "")
     .add("Time between rows", null, "sample_time", quality.sample_time)
     .add("Rows without a measurement", null, "missing", quality.missing, share, "%")
     .add("Repeated measurements", "held", "held", quality.held, share, "%")
@@ -182,10 +193,12 @@ function recordRows({ quality }: ListedLoop, units: UnitNames): LoopFigure[] {
     .add("Smallest step of the output", null, "u_step", quality.u_step, none, step("u_step")).rows;
 }
 
+export const valveSizeName = (verdict: string): string => (verdict === "backlash" ? "Width of the backlash" : "Dead band and stick");
+
 /** The valve and its cycle; without rows if the cause has none. */
 function causeRows({ cause }: ListedLoop, units: UnitNames): LoopFigure[] {
   return new Rows(units, "LoopCause", cause.why_null)
-    .add(cause.verdict === "backlash" ? "Width of the backlash" : "Dead band and stick", "valve_size", "size", cause.size)
+    .add(valveSizeName(cause.verdict), "valve_size", "size", cause.size)
     .add("Jump when it breaks loose", "valve_jump", "jump", cause.jump)
     .add("Period of its cycle", null, "period", cause.period)
     .rows.filter(({ text }) => text !== DASH);

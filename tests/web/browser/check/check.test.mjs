@@ -1,5 +1,6 @@
 // The screen Check against the real service: files in, the work list and a loop's page out, and the way on to a design.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import test from "node:test";
 import { accessibilityViolations, browserTests, dropFile, tracesShown } from "../../harness.mjs";
 
@@ -139,7 +140,8 @@ test("checks are found again: in the form, among the jobs, and under the address
     const { id } = await answerOf(page);
     await page.getByRole("link", { name: "New check" }).click();
     const earlier = page.getByRole("region", { name: "Earlier checks" });
-    await earlier.getByRole("link", { name: `Check ${id.slice(0, 8)}` }).click();
+    await earlier.getByRole("link", { name: "LIC-9" }).first().click();
+    await page.waitForURL((url) => url.hash === `#/jobs/${id}/check`);
     await rows(page).first().waitFor();
     await page.goto(`${tests.service.base}/#/jobs/${id}/design`);
     await page.waitForURL((url) => url.hash === `#/jobs/${id}/check`);
@@ -212,6 +214,63 @@ test("a file with the columns of many loops becomes a batch, and its work list h
   });
 });
 
+test("a batch is compared with an earlier one, in the list, on a loop's page and in the saved list", async () => {
+  const send = async (page, name, csv) => {
+    await page.goto(`${tests.service.base}/#/check`);
+    await choose(page, [file(name, csv)]);
+    await page.getByRole("button", { name: "Check all loops of the file" }).click();
+    await rows(page).nth(1).waitFor();
+    const id = /#\/batches\/([^/?]+)\/check/.exec(page.url())[1];
+    await page.getByRole("link", { name: "New check" }).click();
+    await page.getByRole("button", { name: "Remove all" }).click();
+    return id;
+  };
+  await withPage("#/check", {}, async (page) => {
+    const before = await send(page, "May.csv", wideFile(["FIC-1", "TIC-2"]));
+    const now = await send(page, "June.csv", wideFile(["FIC-1", "TIC-2", "PIC-3"], 0.1));
+    await page.getByRole("region", { name: "Earlier checks" }).getByRole("link", { name: "June" }).click();
+    await rows(page).nth(2).waitFor();
+    const choice = page.getByLabel("Compare with");
+    await choice.selectOption({ label: "May, 2 loops, now" });
+    await page.getByRole("columnheader", { name: "Cause before" }).waitFor();
+    assert.match(page.url(), new RegExp(`before=${before}`));
+    const { loops, changes } = await (await fetch(`${tests.service.base}/v1/batches/${now}/check?before=${before}`)).json();
+    assert.deepEqual(changes.map(({ loop }) => loops[loop].tag), ["FIC-1", "TIC-2"]);
+    const { change } = changes[1];
+    assert.ok(change.variability_ratio < 0.15);
+    const row = rows(page).filter({ has: page.getByRole("link", { name: "TIC-2", exact: true }) });
+    await row.getByRole("cell", { name: change.variability_ratio.toPrecision(3), exact: true }).waitFor();
+    await row.getByRole("cell", { name: change.significant ? "yes" : "no", exact: true }).waitFor();
+    await page.getByRole("columnheader", { name: /^Error now/ }).getByRole("button", { name: /^Error/ }).click();
+    assert.deepEqual(await tags(page), ["FIC-1", "TIC-2", "PIC-3"], "a loop that the earlier check does not have is last");
+    assert.deepEqual(await accessibilityViolations(page), []);
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Work list as CSV" }).click()]);
+    assert.match(readFileSync(await download.path(), "utf8"), /^#,Loop,Cause,Cause before,Error now\/before,Significant,/);
+    await row.getByRole("link").first().click();
+    await page.getByRole("heading", { name: "Since May" }).waitFor();
+    await page.getByText(`The standard deviation of the error is ${change.variability_ratio.toPrecision(3)} times that of then;`).waitFor();
+    assert.deepEqual(await accessibilityViolations(page), []);
+    // The link holds the comparison; without it the list is as before.
+    await page.reload();
+    await page.getByRole("heading", { name: "Since May" }).waitFor();
+    await page.getByRole("link", { name: "Work list", exact: true }).click();
+    await choice.selectOption("no earlier check");
+    await page.getByRole("columnheader", { name: "Cause before" }).waitFor({ state: "detached" });
+    assert.ok(!page.url().includes("before="));
+  });
+});
+
+test("an earlier check that is gone is named, and the list stays", async () => {
+  await withPage("#/check", {}, async (page) => {
+    await choose(page, [file("Unit 7.csv", wideFile(["FIC-1", "TIC-2"]))]);
+    await page.getByRole("button", { name: "Check all loops of the file" }).click();
+    await rows(page).nth(1).waitFor();
+    await page.goto(`${page.url()}?before=nosuchbatch`);
+    await page.locator(".trouble").filter({ hasText: "nosuchbatch" }).waitFor();
+    assert.equal(await rows(page).count(), 2);
+  }, ["404"]);
+});
+
 test("a file that cannot be read says so in its row, before anything is checked", async () => {
   await withPage("#/check", {}, async (page) => {
     await choose(page, [file("FIC-101.csv", swinging(60)), file("only-pv.csv", "Time,PV\n0,1\n1,2\n2,3\n")]);
@@ -229,6 +288,7 @@ test("units that the files name are the units of the answer", async () => {
     const { request } = await answerOf(page);
     assert.deepEqual(request.units, { y: "°C", u: "%" });
     await page.getByRole("link", { name: "TIC-7", exact: true }).first().click();
+    await page.locator("svg.canvas").getByText("TIC-7 PV (°C)").first().waitFor();
     await page.getByRole("row", { name: /^Mean error .* °C$/ }).waitFor();
   });
 });

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { accessibilityViolations, browserTests, openPage, overflow, WINDOWS } from "../../harness.mjs";
+import { accessibilityViolations, browserTests, openPage, overflow, tracesShown, WINDOWS } from "../../harness.mjs";
 import { madeAnswer, madeJob } from "../../made_checks.mjs";
 
 const tests = browserTests();
@@ -101,6 +101,16 @@ test("headings sort by their figures, and say how", async () => {
   });
 });
 
+test("a filter that shows no loop is taken away with one press", async () => {
+  await withJob(`${LIST}?text=pump`, made, {}, async (page) => {
+    await page.getByText("0 of 8 loops").waitFor();
+    await page.getByRole("button", { name: "Show all" }).press("Enter");
+    await rows(page).nth(7).waitFor();
+    assert.equal(await page.getByRole("button", { name: "Show all" }).count(), 0);
+    assert.equal(await page.evaluate(() => document.activeElement.id), "work-find");
+  });
+});
+
 test("the work list is saved as it is shown", async () => {
   await withJob(`${LIST}?owner=process`, made, {}, async (page) => {
     await rows(page).first().waitFor();
@@ -122,6 +132,27 @@ test("a loop's page says why, what to do, what else may be, and which loop comes
     await page.getByRole("heading", { name: "FIC-102", level: 1 }).waitFor();
     await verdict.getByText("Not excluded: Tuned too tight.").waitFor();
     await page.getByRole("row", { name: /^Dead band and stick 3\.20/ }).waitFor();
+  });
+});
+
+test("a loop is drawn together with another one, first those that oscillate with it", async () => {
+  await withJob(`${LIST}?loop=2`, made, {}, async (page) => {
+    const choice = page.getByLabel("Draw with");
+    await page.getByRole("heading", { name: "Whole record" }).waitFor();
+    assert.deepEqual((await choice.locator("option").allInnerTexts()).slice(0, 3), ["no other loop", "FIC-102", "PIC-105"]);
+    await choice.selectOption("FIC-102");
+    await page.getByText("FIC-102 PV", { exact: true }).first().waitFor();
+    await tracesShown(page, "Whole record", 5);
+    assert.deepEqual(await accessibilityViolations(page), []);
+    await page.reload();
+    await tracesShown(page, "Whole record", 5);
+    assert.equal(await choice.inputValue(), "1", "the address keeps it");
+    await choice.selectOption("no other loop");
+    await tracesShown(page, "Whole record", 3);
+    await choice.selectOption("FIC-102");
+    await page.getByRole("link", { name: /^Next/ }).click();
+    await page.getByRole("heading", { name: "AIC-107", level: 1 }).waitFor();
+    assert.equal(await choice.inputValue(), "", "another loop begins by itself");
   });
 });
 

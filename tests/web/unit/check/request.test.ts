@@ -103,13 +103,15 @@ test("a loop's record goes on to Identify as it was read", () => {
 
 test("the address of a check holds the loop, the order and what is shown", () => {
   const of = { kind: "job" as const, id: "j1" };
-  const whole = { screen: "check" as const, of: null, from: null, loop: null, list: WHOLE_LIST };
+  const whole = { screen: "check" as const, of: null, from: null, before: null, loop: null, other: null, list: WHOLE_LIST };
   for (const route of [
     whole,
     { ...whole, from: "j1" },
     { ...whole, of },
     { ...whole, of, loop: 12 },
+    { ...whole, of, loop: 12, other: 0 },
     { ...whole, of: { kind: "batch" as const, id: "b1" }, loop: 3 },
+    { ...whole, of: { kind: "batch" as const, id: "b2" }, before: "b1", list: { ...WHOLE_LIST, sort: "-error" } },
     { ...whole, of, loop: 0, list: { sort: "-gain", cause: "insufficient-data", owner: "control", text: "FIC 1" } },
   ])
     assert.deepEqual(parseRoute(formatRoute(route)), route);

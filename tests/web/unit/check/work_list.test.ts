@@ -66,6 +66,30 @@ test("causes are counted in a fixed order, and each loop once", () => {
   assert.equal(numbers.reduce((sum, [, count]) => sum + count, 0), rows.length);
 });
 
+test("a comparison with an earlier check adds its cause and the change of the error, with the reason where there is none", () => {
+  const change = { before: "stiction", now: "healthy", variability_ratio: 0.25, likelihood: 1e-5, significant: true };
+  const changes = [
+    { loop: 0, change },
+    { loop: 1, change: { ...change, now: "stiction", variability_ratio: 1.2, likelihood: 0.4, significant: false } },
+    { loop: 7, change: { ...change, variability_ratio: null, likelihood: null, significant: false, why_null: { variability_ratio: "The two records cannot be compared." } } },
+  ];
+  const compared = workRows({ ...answer, changes } as never);
+  const all = workColumns(compared, unitNames({ time: "s" }), "Unit 21 in May");
+  assert.deepEqual(all.map(({ id }) => id).slice(0, 4), ["cause", "before", "error", "significant"]);
+  assert.ok(!columns.some(({ id }) => id === "before"), "without a comparison there are no such columns");
+  const texts = (tag: string) => all.slice(1, 4).map((column) => column.figure(compared.find(({ loop }) => loop.tag === tag)!).text);
+  assert.deepEqual(texts("FIC-101"), ["Sticking valve", "0.250", "yes"]);
+  assert.deepEqual(texts("FIC-102"), ["Sticking valve", "1.20", "no"]);
+  assert.deepEqual(texts("TIC-108"), ["Sticking valve", "–", "–"]);
+  assert.deepEqual(texts("TIC-104"), ["–", "–", "–"], "the earlier check does not have it");
+  const why = (tag: string) => all[2]!.figure(compared.find(({ loop }) => loop.tag === tag)!).why;
+  assert.equal(why("TIC-108"), "The two records cannot be compared.");
+  assert.equal(why("TIC-104"), "The earlier check has no loop with this name.");
+  const order = shownRows(compared, all, { ...WHOLE_LIST, sort: "-error" }).map(({ loop }) => loop.tag);
+  assert.deepEqual(order.slice(0, 2), ["FIC-102", "FIC-101"]);
+  assert.match(workCsv(compared, all, compared), /^#,Loop,Cause,Cause before,Error now\/before,Significant,/);
+});
+
 test("a disturbed loop names the loop to mend first", () => {
   const disturbed = rows.find(({ loop }) => loop.tag === "LIC-103")!;
   assert.equal(mendedBefore(disturbed, rows)!.loop.tag, "FIC-102");
@@ -135,17 +159,20 @@ test("events are read whole, however the stream is cut", () => {
   }
 });
 
-test("earlier checks are jobs, and batches once however many jobs they have", () => {
+test("earlier checks are jobs and batches of them, the newest first", () => {
   const job = (id: string, more: object) => ({ id, name: null, status: "succeeded", created_at: "2026-05-04T06:00:00Z", outline: { method: "check", check: { loops: 1, tag: "A", verdict: "tight", action: "retune" } }, ...more });
-  const batch = { id: "b1", name: "Unit 22", total: 500, created_at: "2026-05-04T05:00:00Z" };
+  const batch = (id: string, more: object = {}) => ({ id, name: "Unit 22", total: 500, created_at: "2026-05-04T06:30:00Z", ...more });
+  const tuned = { outline: { method: "robust" } };
   const found = earlierOf(
-    [job("j1", { name: "Unit 21" }), job("x", { batch: "b1" }), job("y", { batch: "b1" }), job("z", { batch: "gone" }), job("j2", { outline: { method: "robust" } }), job("j3", { outline: { method: "check", check: { loops: 3, tag: "A", verdict: "tight", action: "retune" } } })] as never,
-    [batch] as never,
+    [job("j1", { name: "Unit 21" }), job("j0", { created_at: "2026-05-04T05:30:00Z" }), job("j2", tuned), job("j3", { created_at: "2026-05-04T05:00:00Z", outline: { method: "check", check: { loops: 3, tag: "A", verdict: "tight", action: "retune" } } })] as never,
+    [[batch("b1"), job("x", {})], [batch("b2"), job("y", tuned)], [batch("b3"), undefined], [batch("b4567890abc", { name: null, created_at: "2026-05-04T04:00:00Z" }), job("z", {})]] as never,
     Date.parse("2026-05-04T07:00:00Z"),
   );
   assert.deepEqual(found, [
-    { address: "#/jobs/j1/check", name: "Unit 21", words: "tuned too tight, 1 h" },
-    { address: "#/batches/b1/check", name: "Unit 22", words: "500 loops, 2 h" },
-    { address: "#/jobs/j3/check", name: "Check j3", words: "3 loops, first A, tuned too tight, 1 h" },
+    { of: { kind: "batch", id: "b1" }, name: "Unit 22", words: "500 loops, 30 min" },
+    { of: { kind: "job", id: "j1" }, name: "Unit 21", words: "tuned too tight, 1 h" },
+    { of: { kind: "job", id: "j0" }, name: "A", words: "tuned too tight, 1 h" },
+    { of: { kind: "job", id: "j3" }, name: "Check j3", words: "3 loops, first A, tuned too tight, 2 h" },
+    { of: { kind: "batch", id: "b4567890abc" }, name: "Batch b4567890", words: "500 loops, 3 h" },
   ]);
 });

@@ -1,5 +1,6 @@
 """How the cost of answers grows: with the loops of a batch, the rows of a record, the workers, the processes."""
 
+import json
 import os
 import random
 import time
@@ -59,7 +60,8 @@ def of_rows():
         text = record_csv(rows)
         with Service("--workers", WORKERS, "--max-body", BODY, "--memory", "8GiB") as running:
             before, start = processor_seconds(running.process), time.monotonic()
-            answer = running.call("POST", "/v1/identify", text, {"Content-Type": "text/csv"}, timeout=600)
+            answer = running.call("POST", "/v1/identify", json.dumps({"record": {"csv": text}}),
+                                  {"Content-Type": "application/json"}, timeout=600)
             took = time.monotonic() - start
             if answer.status != 200:
                 line(rows, len(text) / 1e6, "refused: %s" % answer.json["detail"], "", "")

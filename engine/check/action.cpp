@@ -13,7 +13,7 @@ std::string valve_work(const LoopCheck& check, const char* what) {
 
 }  // namespace
 
-Action action_for(const LoopCheck& check) {
+Action action_for(const LoopCheck& check, const std::string& source) {
     using enum ActionCode;
     switch (check.cause.verdict) {
         case Verdict::healthy: return {none, Owner::nobody, "Nothing to do."};
@@ -21,10 +21,12 @@ Action action_for(const LoopCheck& check) {
         case Verdict::backlash:
             return {repair_valve, Owner::instruments, valve_work(check, "its linkage has a backlash")};
         case Verdict::tight:
-            return {retune, Owner::control, "Take gain back: the loop is close to its stability limit."};
+            return {retune, Owner::control, "Reduce the gain: the loop is close to its stability limit."};
         case Verdict::sluggish:
             return {retune, Owner::control, "Tune the loop: it removes disturbances more slowly than it could."};
         case Verdict::external:
+            if (!source.empty())
+                return {find_source, Owner::process, "Correct " + source + " first: it makes this oscillation."};
             return {
                 find_source, Owner::process,
                 "Find the source of the disturbance: it comes from outside this loop. Look for a loop with the same "
@@ -40,14 +42,15 @@ Action action_for(const LoopCheck& check) {
                 "historian."};
         case Verdict::manual:
             return {return_to_automatic, Owner::operations,
-                    "Ask why the loop is in manual, mend that, and return it to automatic."};
+                    "Find out why the loop is in manual, correct that, and return it to automatic."};
         case Verdict::frozen:
             return {check_transmitter, Owner::instruments,
                     "The measurement stands still while the output moves. Look at the transmitter and its line."};
         case Verdict::undetermined:
             return {test, Owner::control, "A test tells more: put the loop in manual for some periods, or step it."};
         case Verdict::insufficient_data:
-            return {record_again, Owner::control, "Record again, for longer or with raw values."};
+            return {record_again, Owner::control,
+                    check.quality.rows == 0 ? "Check this loop again." : "Record again, for longer or with raw values."};
     }
     return {};
 }

@@ -5,6 +5,7 @@
 
 namespace tunewright::check {
 
-Action action_for(const LoopCheck& check);
+/// `source`: the tag of the loop that disturbs this one; empty: unknown.
+Action action_for(const LoopCheck& check, const std::string& source = {});
 
 }  // namespace tunewright::check

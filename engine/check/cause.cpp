@@ -7,6 +7,7 @@
 #include "engine/check/pace/loop_law.h"
 #include "engine/check/pace/loop_speed.h"
 #include "engine/check/pace/set_point_response.h"
+#include "engine/check/peak_search.h"
 #include "engine/check/thresholds.h"
 #include "engine/check/valve/hysteresis.h"
 #include "engine/check/valve/valve_fit.h"
@@ -91,8 +92,9 @@ private:
 
     void look_at_oscillation() {
         const auto skip = std::size_t(kSettling * double(q_.samples.size()));
-        output_ = strongest_peak(std::span(q_.samples.u).subspan(skip));
-        of_error_ = strongest_peak(std::span(error_).subspan(skip));
+        const PeakSearch in_output{std::span(q_.samples.u).subspan(skip)}, in_error{std::span(error_).subspan(skip)};
+        output_ = in_output.strongest();
+        of_error_ = in_error.strongest();
         const bool by_output = output_.regularity * output_.share >= of_error_.regularity * of_error_.share;
         peak_ = by_output ? output_ : of_error_;
         const Peak& other = by_output ? of_error_ : output_;
@@ -101,8 +103,7 @@ private:
         line_ = same && !drifts_ ? std::min(output_.line, of_error_.line) : 0;
         candidates_ = {{peak_.period, peak_.line_period, line_}};
         if (!(peak_.regularity > kClearlyRegular && peak_.share > kClearShare)) {
-            for (const Peak& more : {other, strongest_peak(std::span(q_.samples.u).subspan(skip), kSlowTilt),
-                                     strongest_peak(std::span(error_).subspan(skip), kSlowTilt)})
+            for (const Peak& more : {other, in_output.strongest(kSlowTilt), in_error.strongest(kSlowTilt)})
                 add_candidate({more.period, more.line_period, 0});
         }
         if (peak_.regularity > kRegular)

@@ -19,21 +19,6 @@ struct OscillationStudy {
     std::size_t looked_at = 0;            ///< peaks of the spectrum
 };
 
-/// The strongest peak of a series' spectrum; times in rows.
-struct Peak {
-    double period = 0;       ///< 0: the series is constant
-    double regularity = 0;   ///< period over three standard deviations of the periods
-    double share = 0;        ///< of the series' power in the peak's band
-    double line = 0;         ///< of the band's power in a single sine, 0 to 1
-    double line_period = 0;  ///< of that sine
-    double spread = 0;       ///< power beside that sine over the band\'s median: high where the phase drifts
-    double persistence = 0;  ///< autocorrelation of the band after three periods
-    double cycles = 0;       ///< in the series
-};
-
-/// `tilt`: power is weighted by frequency to the power -tilt, which prefers slow peaks.
-Peak strongest_peak(std::span<const double> series, double tilt = 0);
-
 OscillationStudy study_oscillation(const Samples& samples);
 
 }  // namespace tunewright::check

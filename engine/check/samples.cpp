@@ -82,6 +82,7 @@ Rows rows_of(const Record& record) {
     for (const std::size_t i : order) {
         rows.t.push_back(record.t[i]);
         rows.measured.push_back(std::isfinite(record.y[i]) ? 1 : 0);
+        rows.moved.push_back(std::isfinite(record.u[i]) ? 1 : 0);
         rows.y.push_back(y = held(record.y[i], y));
         rows.u.push_back(u = held(record.u[i], u));
         if (!record.r.empty()) rows.r.push_back(r = held(record.r[i], r));
@@ -104,8 +105,8 @@ Samples even_samples(const Rows& rows) {
     const Part part = longest_part(rows);
     if (part.end <= part.begin || !(rows.step > 0)) return out;
     out.start = rows.t[part.begin];
-    out.step = rows.step;
-    const auto count = static_cast<std::size_t>(std::floor(part.duration / rows.step + 0.5)) + 1;
+    out.step = std::max(rows.step, part.duration / static_cast<double>(kMostSamples - 1));
+    const auto count = static_cast<std::size_t>(std::floor(part.duration / out.step + 0.5)) + 1;
     const bool has_r = !rows.r.empty() && std::isfinite(rows.r[part.begin]);
     std::size_t row = part.begin;
     for (std::size_t i = 0; i < count; ++i) {
@@ -115,6 +116,7 @@ Samples even_samples(const Rows& rows) {
         out.y.push_back(rows.y[row]);
         out.u.push_back(rows.u[row]);
         if (has_r) out.r.push_back(rows.r[row]);
+        out.moved.push_back(rows.moved[row]);
         if (!rows.automatic.empty()) out.automatic.push_back(rows.automatic[row]);
     }
     return out;

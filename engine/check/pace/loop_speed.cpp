@@ -26,9 +26,9 @@ constexpr int kIterations = 12, kDampings = 8;
 constexpr double kConverged = 0.01;              // of the robust cost
 constexpr double kOutlier = 3, kFarOutlier = 8;  // standard deviations
 constexpr double kLargestPole = 0.998;
-constexpr std::size_t kResponse = 400;  // rows of a load step's mark
-constexpr double kLoadStep = 20;        // square of its size over its error
-constexpr double kNegligible = 1e-3;    // of the mark's power
+constexpr double kLoadStep = 20;            // square of its size over its error
+constexpr double kFarthest = 30;            // standard deviations of a residual in the search for steps
+constexpr std::size_t kFewestBehind = 10;   // rows behind a step
 constexpr double kCostOfStep = 5;
 constexpr int kSearches = 3;
 constexpr double kMad = 1.4826;  // standard deviation over the median magnitude, of a normal variable
@@ -70,29 +70,27 @@ double cost_of(const Series& residual, double scale) {
     return sum;
 }
 
-/// Through 1/(1 + c1 q + c2 q^2 + c3 q^3).
-Series through(const std::array<double, 3>& c, const Series& x) {
-    Series out(x.size());
-    double y1 = 0, y2 = 0, y3 = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const double y = x[i] - c[0] * y1 - c[1] * y2 - c[2] * y3;
+/// Through 1/(1 + c1 q + c2 q^2 + c3 q^3); `Value` is a number or some side by side, which take the time of one.
+template <class Value>
+std::vector<Value> through(const std::array<double, 3>& c, std::vector<Value> x) {
+    Value y1 = Value(x[0] * 0), y2 = y1, y3 = y1;
+    for (Value& value : x) {
+        // The newest value comes last: everything else is computed while it is awaited.
+        const Value y = (value - c[1] * y2 - c[2] * y3) - c[0] * y1;
         y3 = y2;
         y2 = y1;
-        out[i] = y1 = y;
+        value = y1 = y;
     }
-    return out;
+    return x;
 }
 
-Series later(const Series& x, std::size_t rows) {
-    Series out(x.size(), 0.0);
-    if (rows < x.size()) std::copy(x.begin(), x.end() - std::ptrdiff_t(rows), out.begin() + std::ptrdiff_t(rows));
-    return out;
-}
+/// Row i - rows; 0 before the first.
+double at_row(const Series& x, std::size_t i, std::size_t rows) { return i >= rows ? x[i - rows] : 0; }
 
 /// x - p q x.
 Series less(const Series& x, double p) {
     Series out(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) out[i] = x[i] - (i > 0 ? p * x[i - 1] : 0);
+    for (std::size_t i = 0; i < x.size(); ++i) out[i] = x[i] - p * at_row(x, i, 1);
     return out;
 }
 
@@ -117,17 +115,32 @@ Parameters stable(Parameters theta) {
     return theta;
 }
 
+/// A series with zeros before it, so that it can be read at any earlier row.
+class Delayed {
+public:
+    Delayed(const Series& series, std::size_t most) : most_(most), padded_(most, 0.0) {
+        padded_.insert(padded_.end(), series.begin(), series.end());
+    }
+    std::span<const double> by(std::size_t rows) const {
+        return std::span(padded_).subspan(most_ - rows, padded_.size() - most_);
+    }
+
+private:
+    std::size_t most_;
+    Series padded_;
+};
+
 /// The fit for one dead time.
 class SpeedFit {
 public:
-    SpeedFit(const Series& dy, Series x) : dy_(dy), dy_before_(later(dy, 1)), x_(std::move(x)) {}
+    SpeedFit(const Series& dy, Series x) : dy_(dy), x_(std::move(x)) {}
 
     Candidate from(Parameters start, std::vector<std::size_t> at) const {
         Candidate here;
         here.at = std::move(at);
         start.loads.assign(here.at.size(), 0.0);
         here.parameters = stable(std::move(start));
-        here.residual = residual(here.parameters, here.at);
+        here.residual = residual(parts(here.parameters, here.at), here.parameters);
         double damping = 1e-3;
         for (int i = 0; i < kIterations; ++i)
             if (!improve(here, damping)) break;
@@ -152,60 +165,96 @@ public:
 private:
     Series parts(const Parameters& theta, const std::vector<std::size_t>& at) const {
         Series w(dy_.size());
-        for (std::size_t i = 0; i < w.size(); ++i) w[i] = dy_[i] - theta.a * dy_before_[i] - theta.b * x_[i];
+        for (std::size_t i = 0; i < w.size(); ++i) w[i] = dy_[i] - theta.a * at_row(dy_, i, 1) - theta.b * x_[i];
         for (std::size_t k = 0; k < at.size(); ++k) w[at[k]] -= theta.loads[k];
         return w;
     }
 
-    Series residual(const Parameters& theta, const std::vector<std::size_t>& at) const {
-        return through(theta.c, less(parts(theta, at), theta.p));
+    static Series residual(const Series& parts, const Parameters& theta) {
+        return through(theta.c, less(parts, theta.p));
     }
 
-    std::vector<Series> slopes(const Candidate& here) const {
+    /// The residual's derivative by each parameter, but for its sign: a, b and p, then c, then the loads.
+    struct Slopes {
+        std::array<Series, 3> by_abp;
+        Delayed by_c, by_load;
+    };
+
+    Slopes slopes(const Candidate& here) const {
         const Parameters& theta = here.parameters;
-        std::vector<Series> J;
-        J.push_back(through(theta.c, less(dy_before_, theta.p)));
-        J.push_back(through(theta.c, less(x_, theta.p)));
-        J.push_back(through(theta.c, later(parts(theta, here.at), 1)));
-        const Series filtered = through(theta.c, here.residual);
-        for (std::size_t k = 1; k <= theta.c.size(); ++k) J.push_back(later(filtered, k));
+        const std::size_t n = dy_.size();
+        const Series w = parts(theta, here.at);
+        std::vector<Eigen::Array4d> side_by_side(n);
+        for (std::size_t i = 0; i < n; ++i)
+            side_by_side[i] = {at_row(dy_, i, 1) - theta.p * at_row(dy_, i, 2), x_[i] - theta.p * at_row(x_, i, 1),
+                               at_row(w, i, 1), here.residual[i]};
+        side_by_side = through(theta.c, std::move(side_by_side));
+        std::array<Series, 4> filtered;
+        for (std::size_t k = 0; k < filtered.size(); ++k) {
+            filtered[k].resize(n);
+            for (std::size_t i = 0; i < n; ++i) filtered[k][i] = side_by_side[i][Eigen::Index(k)];
+        }
+        return {{std::move(filtered[0]), std::move(filtered[1]), std::move(filtered[2])},
+                Delayed(filtered[3], theta.c.size()),
+                here.at.empty() ? Delayed({}, 0) : Delayed(mark(theta), n)};
+    }
+
+    /// What a step of the load by 1 at row 0 leaves in the residual.
+    Series mark(const Parameters& theta) const {
         Series pulse(dy_.size(), 0.0);
         pulse[0] = 1;
-        const Series mark = through(theta.c, less(pulse, theta.p));
-        for (const std::size_t row : here.at) J.push_back(later(mark, row));
-        return J;
+        return residual(pulse, theta);
+    }
+
+    /// Gauss and Newton's normal equations, with less weight on outliers.
+    struct Equations {
+        Eigen::MatrixXd A;
+        Eigen::VectorXd b;
+    };
+
+    Equations equations(const Candidate& here, double scale) const {
+        const Slopes found = slopes(here);
+        std::vector<std::span<const double>> J(found.by_abp.begin(), found.by_abp.end());
+        for (std::size_t k = 1; k <= here.parameters.c.size(); ++k) J.push_back(found.by_c.by(k));
+        for (const std::size_t row : here.at) J.push_back(found.by_load.by(row));
+        const std::size_t n = dy_.size();
+        Series weight(n, 0.0), weighted(n);
+        for (std::size_t i = kSkipped; i < n; ++i) {
+            const double size = std::abs(here.residual[i]);
+            weight[i] = size < kOutlier * scale ? 1 : kOutlier * scale / size;
+        }
+        const auto count = Eigen::Index(J.size());
+        Equations out{Eigen::MatrixXd(count, count), Eigen::VectorXd(count)};
+        for (Eigen::Index i = 0; i < count; ++i) {
+            const auto column = J[std::size_t(i)];
+            for (std::size_t row = 0; row < n; ++row) weighted[row] = column[row] * weight[row];
+            out.b[i] = sum_of_products(weighted, here.residual);
+            for (Eigen::Index k = 0; k <= i; ++k)
+                out.A(i, k) = out.A(k, i) = sum_of_products(weighted, J[std::size_t(k)]);
+        }
+        return out;
+    }
+
+    static Parameters moved(Parameters theta, const Eigen::VectorXd& step) {
+        theta.a += step[0];
+        theta.b += step[1];
+        theta.p += step[2];
+        for (std::size_t k = 0; k < 3; ++k) theta.c[k] += step[Eigen::Index(3 + k)];
+        for (std::size_t k = 0; k < theta.loads.size(); ++k) theta.loads[k] += step[Eigen::Index(6 + k)];
+        return stable(std::move(theta));
     }
 
     /// One damped step; false: converged, or nothing is better.
     bool improve(Candidate& here, double& damping) const {
         const double scale = scale_of(here.residual), before = cost_of(here.residual, scale);
-        const auto J = slopes(here);
-        const auto n = Eigen::Index(J.size());
-        Series weighted(dy_.size());
-        Eigen::MatrixXd A(n, n);
-        Eigen::VectorXd g(n);
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const Series& column = J[std::size_t(i)];
-            for (std::size_t row = 0; row < weighted.size(); ++row) {
-                const double z = std::abs(here.residual[row]) / scale;
-                weighted[row] = row < kSkipped ? 0 : column[row] * (z < kOutlier ? 1 : kOutlier / z);
-            }
-            g[i] = sum_of_products(weighted, here.residual);
-            for (Eigen::Index k = 0; k <= i; ++k) A(i, k) = A(k, i) = sum_of_products(weighted, J[std::size_t(k)]);
-        }
+        const Equations equal = equations(here, scale);
         for (int attempt = 0; attempt < kDampings; ++attempt, damping *= 10) {
-            Eigen::MatrixXd damped = A;
-            damped.diagonal() += damping * (A.diagonal().array() + 1e-12).matrix();
-            const Eigen::VectorXd step = damped.ldlt().solve(g);
+            Eigen::MatrixXd damped = equal.A;
+            damped.diagonal() += damping * (equal.A.diagonal().array() + 1e-12).matrix();
+            const Eigen::VectorXd step = damped.ldlt().solve(equal.b);
             if (!step.allFinite()) continue;
-            Parameters next = here.parameters;
-            next.a += step[0];
-            next.b += step[1];
-            next.p += step[2];
-            for (std::size_t k = 0; k < 3; ++k) next.c[k] += step[Eigen::Index(3 + k)];
-            for (std::size_t k = 0; k < next.loads.size(); ++k) next.loads[k] += step[Eigen::Index(6 + k)];
-            next = stable(std::move(next));
-            Series left = residual(next, here.at);
+            Parameters next = moved(here.parameters, step);
+            Series left = residual(parts(next, here.at), next);
             const double after = cost_of(left, scale);
             if (!(after < before)) continue;
             here.parameters = std::move(next);
@@ -218,37 +267,25 @@ private:
 
     /// Where the residual without known steps has the mark of one.
     std::vector<std::size_t> loads_in(const Candidate& here) const {
-        Series e = residual(here.parameters, {});
+        const Parameters& theta = here.parameters;
+        Series e = residual(parts(theta, {}), theta);
         const double scale = scale_of(e);
-        const std::size_t n = e.size(), length = std::min(kResponse, n);
-        Series pulse(length, 0.0);
-        pulse[0] = 1;
-        Series mark = through(here.parameters.c, less(pulse, here.parameters.p));
-        double square = sum_of_products(mark, mark), rest = 0;
-        // The end of the mark that has hardly any of its power costs most of the time.
-        while (mark.size() > 1 && rest + mark.back() * mark.back() < kNegligible * square) {
-            rest += mark.back() * mark.back();
-            mark.pop_back();
-        }
-        square -= rest;
-        for (std::size_t i = 0; i < n; ++i) e[i] = i < kSkipped ? 0 : std::clamp(e[i], -30 * scale, 30 * scale);
+        const Series of_step = mark(theta);
+        const double square = sum_of_products(of_step, of_step);
+        const std::size_t n = e.size();
+        for (std::size_t i = 0; i < n; ++i)
+            e[i] = i < kSkipped ? 0 : std::clamp(e[i], -kFarthest * scale, kFarthest * scale);
         std::vector<std::size_t> found;
         for (int search = 0; search < kSearches; ++search) {
-            double most = 0, size = 0;
-            std::size_t best = 0;
-            for (std::size_t row = kSkipped; row + 10 < n; ++row) {
-                const std::size_t count = std::min(mark.size(), n - row);
-                const double match =
-                    sum_of_products(std::span(mark).first(count), std::span<const double>(e).subspan(row, count));
-                if (const double score = match * match / square / (scale * scale); score > most) {
-                    most = score;
-                    best = row;
-                    size = match / square;
-                }
-            }
-            if (most < kLoadStep) break;
+            // The products of the residual with the mark at each row are the residual, backwards, through its filter.
+            const Series match = residual(Series(e.rbegin(), e.rend()), theta);
+            std::size_t best = kSkipped;
+            for (std::size_t row = kSkipped; row + kFewestBehind < n; ++row)
+                if (std::abs(match[n - 1 - row]) > std::abs(match[n - 1 - best])) best = row;
+            const double size = match[n - 1 - best] / square;
+            if (size * size * square < kLoadStep * scale * scale) break;
             found.push_back(best);
-            for (std::size_t k = 0; k < std::min(mark.size(), n - best); ++k) e[best + k] -= size * mark[k];
+            for (std::size_t row = best; row < n; ++row) e[row] -= size * of_step[row - best];
         }
         std::ranges::sort(found);
         found.erase(std::unique(found.begin(), found.end()), found.end());
@@ -256,7 +293,7 @@ private:
     }
 
     const Series& dy_;
-    Series dy_before_, x_;
+    Series x_;
 };
 
 /// Differences in units of their own standard deviation, which is returned.
@@ -270,9 +307,10 @@ double scaled_differences(const Series& values, Series& out) {
 
 Series delayed(const Series& du, double dead_time) {
     const double whole = std::floor(dead_time), part = dead_time - whole;
-    const Series first = later(du, std::size_t(whole) + 1), second = later(du, std::size_t(whole) + 2);
+    const auto rows = std::size_t(whole) + 1;
     Series out(du.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = (1 - part) * first[i] + part * second[i];
+    for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] = (1 - part) * at_row(du, i, rows) + part * at_row(du, i, rows + 1);
     return out;
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "engine/identification/record/series.h"
 #include "engine/number_text.h"
 
 namespace tunewright::check {
@@ -20,8 +21,10 @@ constexpr std::size_t kFewestPoints = 96;  // of the common time
 constexpr double kSameSpectrum = 0.85;     // cosine of the powers, for records without a common time
 constexpr double kSlave = 0.99;            // correlation of a set point and an output
 constexpr std::size_t kPast = 4;           // values of the wave, a half of a period
-constexpr double kClearLead = 0.1;         // in ln of the residual's square, over all others
-constexpr double kNoMaker = 0.5;           // the same: a loop without a cause of its own is not the source
+constexpr double kClearLead = 0.1;         // in ln of the residual's square, as the mean over the others
+constexpr std::size_t kMostCompared = 24;  // loops of near periods that one loop is compared with
+constexpr double kFewestMoves = 8;         // independent values of a set point or an output: two ramps are alike
+constexpr double kSameSpan = 0.01;         // of a record's duration
 
 float at(const Shape& shape, double time) {
     const double place = (time - shape.wave_from) / shape.wave_step;
@@ -31,18 +34,36 @@ float at(const Shape& shape, double time) {
     return shape.wave[i] + part * (shape.wave[i + 1] - shape.wave[i]);
 }
 
+struct TimeSpan {
+    double from = 0, to = 0;  ///< s
+
+    double length() const { return to - from; }
+    TimeSpan part(int k) const {
+        return {from + length() * k / double(kParts), from + length() * (k + 1) / double(kParts)};
+    }
+};
+
+/// The time that both waves have; from > to: none.
+TimeSpan common_time(const Shape& a, const Shape& b) {
+    const auto end = [](const Shape& shape) {
+        return shape.wave_from + shape.wave_step * static_cast<double>(shape.wave.size() - 1);
+    };
+    return {std::max(a.wave_from, b.wave_from), std::min(end(a), end(b))};
+}
+
 struct Overlap {
     double correlation = 0, lag = 0;  ///< s
     std::size_t points = 0;
 };
 
-/// The correlation of b shifted by `lag` with a, over the part `part` of the time that both have.
-Overlap correlation(const Shape& a, const Shape& b, double lag, int part) {
+/// The correlation of b shifted by `lag` with a, over the values of a in a time.
+Overlap correlation(const Shape& a, const Shape& b, double lag, const TimeSpan& time) {
     double aa = 0, bb = 0, ab = 0;
     Overlap out{.lag = lag};
-    const std::size_t from = a.wave.size() * std::size_t(part) / kParts,
-                      to = a.wave.size() * std::size_t(part + 1) / kParts;
-    for (std::size_t i = from; i < to; ++i) {
+    const auto index = [&](double t) {
+        return std::size_t(std::clamp(std::ceil((t - a.wave_from) / a.wave_step), 0.0, double(a.wave.size())));
+    };
+    for (std::size_t i = index(time.from); i < index(time.to); ++i) {
         const float other = at(b, a.wave_from + a.wave_step * static_cast<double>(i) + lag);
         if (std::isnan(other)) continue;
         aa += double(a.wave[i]) * a.wave[i];
@@ -54,10 +75,10 @@ Overlap correlation(const Shape& a, const Shape& b, double lag, int part) {
     return out;
 }
 
-Overlap best_lag(const Shape& a, const Shape& b, double period, int part) {
-    Overlap best;
+Overlap best_lag(const Shape& a, const Shape& b, double period, const TimeSpan& time) {
+    Overlap best{.correlation = -1};
     for (double lag = -0.5 * period; lag < 0.5 * period; lag += period / 24) {
-        const Overlap here = correlation(a, b, lag, part);
+        const Overlap here = correlation(a, b, lag, time);
         if (here.points >= kFewestPoints / kParts && here.correlation > best.correlation) best = here;
     }
     return best;
@@ -65,11 +86,11 @@ Overlap best_lag(const Shape& a, const Shape& b, double period, int part) {
 
 /// True if the waves keep one phase in every part of the common time: two loops that only happen to have one period
 /// drift against each other.
-bool same_wave(const Shape& a, const Shape& b, double period) {
+bool same_wave(const Shape& a, const Shape& b, double period, const TimeSpan& common) {
     std::optional<double> first;
     int known = 0;
     for (int part = 0; part < int(kParts); ++part) {
-        const Overlap best = best_lag(a, b, period, part);
+        const Overlap best = best_lag(a, b, period, common.part(part));
         if (best.points == 0) continue;
         ++known;
         if (best.correlation < kSameWave) return false;
@@ -89,19 +110,20 @@ double cosine(const std::vector<float>& a, const std::vector<float>& b) {
     return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
 }
 
+/// True if the waves have one clock and enough of their time in common.
 bool share_time(const Shape& a, const Shape& b) {
-    return a.dated == b.dated && std::min(a.to, b.to) > std::max(a.from, b.from);
+    if (!a.dated || !b.dated || a.wave.size() < 2 || b.wave.size() < 2) return false;
+    return common_time(a, b).length() >= double(kFewestPoints) * std::max(a.wave_step, b.wave_step);
 }
 
+/// Of loops whose periods agree.
 bool together(const LoopCheck& a, const LoopCheck& b) {
-    const double Ta = a.shape.period, Tb = b.shape.period;
-    if (!(Ta > 0 && Tb > 0) || std::abs(std::log(Ta / Tb)) > kSamePeriod) return false;
-    if (a.shape.wave.size() < 2 || b.shape.wave.size() < 2) return false;
-    if (share_time(a.shape, b.shape)) return same_wave(a.shape, b.shape, std::sqrt(Ta * Tb));
+    if (share_time(a.shape, b.shape))
+        return same_wave(a.shape, b.shape, std::sqrt(a.shape.period * b.shape.period), common_time(a.shape, b.shape));
     return cosine(a.shape.spectrum, b.shape.spectrum) > kSameSpectrum;
 }
 
-/// The wave of b at the places of a, `lag` later; empty where b has none.
+/// The wave of b at the times of a; NaN where b has none.
 std::vector<double> on_clock_of(const Shape& a, const Shape& b) {
     std::vector<double> out;
     for (std::size_t i = 0; i < a.wave.size(); ++i)
@@ -142,42 +164,61 @@ bool makes_cycles(const LoopCheck& check) {
            check.cause.verdict == Verdict::tight;
 }
 
-/// How much more each loop leads the others than they lead it; without a common time the share of the oscillation.
-std::vector<double> source_scores(std::span<const LoopCheck* const> loops, const Cluster& cluster) {
-    std::vector<double> scores(cluster.loops.size(), 0.0);
-    for (std::size_t i = 0; i < scores.size(); ++i) {
-        const LoopCheck& one = *loops[cluster.loops[i]];
-        for (std::size_t k = 0; k < scores.size(); ++k) {
-            const LoopCheck& other = *loops[cluster.loops[k]];
-            if (i == k || !share_time(one.shape, other.shape)) continue;
-            const double lead = leads(one.shape, other.shape);
-            scores[i] += lead;
-            scores[k] -= lead;
-        }
-        scores[i] += makes_cycles(one) ? 0 : -kNoMaker;
+/// How much more a loop leads the others of its group than they lead it, as a mean; empty without a common time.
+std::optional<double> lead_over_others(std::span<const LoopCheck* const> loops, const Cluster& cluster,
+                                       std::size_t one) {
+    double sum = 0;
+    int count = 0;
+    for (const std::size_t other : cluster.loops) {
+        const Shape &a = loops[one]->shape, &b = loops[other]->shape;
+        if (other == one || !share_time(a, b)) continue;
+        sum += leads(a, b) - leads(b, a);
+        ++count;
     }
-    return scores;
+    return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
+double strength(const LoopCheck& check) {
+    return check.oscillation.periods.empty() ? 0 : check.oscillation.periods.front().share;
+}
+
+/// The source is a loop that makes a cycle by itself and whose error moves before those of the others.
 void find_source(std::span<const LoopCheck* const> loops, Cluster& cluster) {
-    const auto scores = source_scores(loops, cluster);
-    std::vector<std::size_t> order(scores.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return scores[i]; });
-    std::vector<std::size_t> sorted;
-    for (const std::size_t i : order) sorted.push_back(cluster.loops[i]);
-    cluster.loops = std::move(sorted);
-    const LoopCheck& first = *loops[cluster.loops[0]];
-    const std::string period = figure_text(cluster.period) + " s";
-    const bool clear = scores[order[0]] - scores[order[1]] > kClearLead;
-    if (!clear || !makes_cycles(first)) {
+    std::ranges::stable_sort(cluster.loops, std::greater<>(), [&](std::size_t i) { return strength(*loops[i]); });
+    std::vector<std::pair<double, std::size_t>> makers;
+    for (const std::size_t i : cluster.loops) {
+        if (!makes_cycles(*loops[i]) || makers.size() == kMostCompared) continue;
+        if (const auto lead = lead_over_others(loops, cluster, i)) makers.emplace_back(*lead, i);
+    }
+    std::ranges::stable_sort(makers, std::greater<>(), &std::pair<double, std::size_t>::first);
+    if (!makers.empty()) {
+        const auto first = std::ranges::find(cluster.loops, makers.front().second);
+        std::rotate(cluster.loops.begin(), first, first + 1);
+    }
+    const std::string period = figure_text(cluster.period) + " s", tag = loops[cluster.loops[0]]->tag;
+    const double second = makers.size() > 1 ? std::max(0.0, makers[1].first) : 0;
+    if (makers.empty() || makers.front().first - second <= kClearLead) {
         cluster.why = "No loop stands out as the source of the oscillation with a period of " + period + ": put " +
-                      first.tag + " in manual for some periods and see whether the others stop.";
+                      tag + " in manual for some periods and see whether the others stop.";
         return;
     }
     cluster.source = cluster.loops[0];
-    cluster.why = "The oscillation with a period of " + period + " is made in " + first.tag +
+    cluster.why = "The oscillation with a period of " + period + " is made in " + tag +
                   " itself, and its error moves before those of the others.";
+}
+
+/// Loops that oscillate, by period.
+std::vector<std::size_t> by_period(std::span<const LoopCheck* const> loops) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < loops.size(); ++i)
+        if (loops[i]->shape.period > 0 && loops[i]->shape.wave.size() >= 2) order.push_back(i);
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return loops[i]->shape.period; });
+    return order;
+}
+
+bool moves_often(const std::vector<float>& values) {
+    return values.size() > std::size_t(kFewestMoves) &&
+           effective_samples(std::vector<double>(values.begin(), values.end())) >= kFewestMoves;
 }
 
 }  // namespace
@@ -189,11 +230,20 @@ std::vector<Cluster> clusters_of(std::span<const LoopCheck* const> loops) {
         while (group[i] != i) i = group[i] = group[group[i]];
         return i;
     };
-    for (std::size_t i = 0; i < loops.size(); ++i)
-        for (std::size_t k = i + 1; k < loops.size(); ++k)
-            if (root(i) != root(k) && together(*loops[i], *loops[k])) group[root(k)] = root(i);
+    const auto order = by_period(loops);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const LoopCheck& one = *loops[order[i]];
+        std::size_t compared = 0;
+        for (std::size_t k = i + 1; k < order.size() && compared < kMostCompared; ++k) {
+            const LoopCheck& other = *loops[order[k]];
+            if (std::log(other.shape.period / one.shape.period) > kSamePeriod) break;
+            if (root(order[i]) == root(order[k])) continue;
+            ++compared;
+            if (together(one, other)) group[root(order[k])] = root(order[i]);
+        }
+    }
     std::vector<Cluster> all(loops.size());
-    for (std::size_t i = 0; i < loops.size(); ++i) all[root(i)].loops.push_back(i);
+    for (const std::size_t i : order) all[root(i)].loops.push_back(i);
     std::erase_if(all, [](const Cluster& cluster) { return cluster.loops.size() < 2; });
     for (Cluster& cluster : all) {
         double sum = 0;
@@ -206,12 +256,17 @@ std::vector<Cluster> clusters_of(std::span<const LoopCheck* const> loops) {
 }
 
 std::vector<CascadePair> cascades_of(std::span<const LoopCheck* const> loops) {
+    std::vector<std::size_t> slaves, masters;
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+        if (moves_often(loops[i]->shape.set_point)) slaves.push_back(i);
+        if (moves_often(loops[i]->shape.output)) masters.push_back(i);
+    }
     std::vector<CascadePair> pairs;
-    for (std::size_t master = 0; master < loops.size(); ++master) {
-        for (std::size_t slave = 0; slave < loops.size(); ++slave) {
+    for (const std::size_t master : masters) {
+        for (const std::size_t slave : slaves) {
             const Shape &outer = loops[master]->shape, &inner = loops[slave]->shape;
-            if (master == slave || outer.output.empty() || inner.set_point.empty()) continue;
-            if (!share_time(outer, inner) || std::abs(outer.from - inner.from) > 0.01 * (outer.to - outer.from))
+            const double apart = std::max(std::abs(outer.from - inner.from), std::abs(outer.to - inner.to));
+            if (master == slave || !outer.dated || !inner.dated || apart > kSameSpan * (outer.to - outer.from))
                 continue;
             if (cosine(outer.output, inner.set_point) > kSlave) pairs.push_back({master, slave});
         }

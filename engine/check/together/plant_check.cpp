@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "engine/check/action.h"
@@ -28,7 +29,7 @@ Figure share_of(const LoopCheck& check) {
         case Verdict::saturation:
         case Verdict::manual:
         case Verdict::frozen:
-        case Verdict::quantised: return no_figure("What mending gains cannot be told from a record in this state.");
+        case Verdict::quantised: return no_figure("The gain cannot be estimated from this record.");
         default: return no_figure("The cause is open.");
     }
 }
@@ -58,7 +59,7 @@ Rank rank_of(std::size_t index, const LoopCheck& check) {
     return rank;
 }
 
-/// What a loop is first ordered by: loops out of service and sources of others, then by gain.
+/// What a loop is first ordered by: sources of others, then other loops with a cause, disturbed, open and healthy ones.
 int urgency(const LoopCheck& check, bool source) {
     switch (check.cause.verdict) {
         case Verdict::healthy: return 0;
@@ -69,22 +70,28 @@ int urgency(const LoopCheck& check, bool source) {
     }
 }
 
+/// True for a verdict that the oscillation of another loop may have caused.
+bool may_be_explained(Verdict verdict) {
+    return verdict == Verdict::stiction || verdict == Verdict::backlash || verdict == Verdict::tight ||
+           verdict == Verdict::external || verdict == Verdict::undetermined || verdict == Verdict::healthy;
+}
+
 void explain_by_source(LoopCheck& check, const LoopCheck& source) {
     Cause& cause = check.cause;
-    if (cause.verdict == Verdict::external)
-        cause.alternatives.clear();
-    else
+    if (!may_be_explained(cause.verdict)) return;
+    cause.alternatives.clear();
+    if (cause.verdict == Verdict::stiction || cause.verdict == Verdict::backlash || cause.verdict == Verdict::tight)
         cause.alternatives = {cause.verdict};
     cause.verdict = Verdict::external;
     cause.confidence = Confidence::likely;
-    cause.size = cause.jump = no_figure("The valve of another loop makes the cycle.");
+    cause.size = cause.jump = no_figure("Another loop makes the oscillation.");
     cause.why_open.clear();
     cause.evidence.insert(cause.evidence.begin(),
                           {"moves-with-source",
-                           check.shape.period,
+                           check.oscillation.periods.empty() ? 0 : check.oscillation.periods.front().period,
                            {},
                            "The loop oscillates together with " + source.tag + ", where the oscillation is made."});
-    check.action = action_for(check);
+    check.action = action_for(check, source.tag);
 }
 
 }  // namespace
@@ -131,7 +138,7 @@ Change change_of(const LoopCheck& before, const LoopCheck& now) {
         return change;
     }
     const boost::math::fisher_f_distribution<double> chance(young.independent - 1, old.independent - 1);
-    const double below = boost::math::cdf(chance, ratio * ratio);
+    const double below = boost::math::cdf(chance, std::min(ratio * ratio, std::numeric_limits<double>::max()));
     change.likelihood = std::min(1.0, 2 * std::min(below, 1 - below));
     change.significant = *change.likelihood < kByChance;
     return change;

@@ -86,9 +86,18 @@ export interface BeforeChoice {
   offer(checks: readonly EarlierCheck[], chosen: string | null, since: string): void;
 }
 
-export function beforeChoice(onChoose: (before: string | null) => void): BeforeChoice {
-  const select = h("select", { id: "work-before", onchange: () => onChoose(select.value || null) });
-  const element = h("span", { class: "work-before", hidden: true }, h("label", { for: select.id }, "Compare with"), select);
+/** `onChoose`: until the comparison is there. */
+export function beforeChoice(onChoose: (before: string | null) => Promise<void>): BeforeChoice {
+  const select = h("select", { id: "work-before", onchange: () => void choose() });
+  const busy = h("span", { class: "hint", role: "status" });
+  const element = h("span", { class: "work-before", hidden: true }, h("label", { for: select.id }, "Compare with"), select, busy);
+
+  async function choose(): Promise<void> {
+    busy.textContent = "Comparing...";
+    await onChoose(select.value || null);
+    busy.textContent = "";
+  }
+
   return {
     element,
     offer(checks, chosen, since) {

@@ -42,7 +42,7 @@ export interface WholeLoop {
 export interface CheckSource {
   cancel(): Promise<void>;
   /** Adds what has changed since an earlier batch; null: nothing. A job is not compared. */
-  compare(before: string | null): void;
+  compare(before: string | null): Promise<void>;
   /** A loop by its place in the list. */
   whole(place: number): Promise<WholeLoop>;
   stop(): void;
@@ -103,7 +103,7 @@ function jobSource(id: string, { onState, onTrouble }: CheckFollower): CheckSour
   const stop = followCheck(id, { onJob: take, onProgress: (progress) => job && onState(stateOf({ ...job, progress })), onTrouble });
   return {
     stop,
-    compare() {},
+    compare: () => Promise.resolve(),
     cancel: async () => void (await cancelJob(id)),
     whole: (place) =>
       Promise.resolve({
@@ -174,10 +174,10 @@ function batchSource(id: string, { onState, onTrouble }: CheckFollower): CheckSo
     stop() {
       stopped = true;
     },
-    compare(earlier) {
+    async compare(earlier) {
       if (earlier === before) return;
       before = earlier;
-      if (found) void addChanges(found, earlier);
+      if (found) await addChanges(found, earlier);
     },
     cancel: async () => void (await cancelBatch(id)),
     async whole(place) {

@@ -3,7 +3,7 @@ import { getCheck, isCheckRequest } from "../api/check.ts";
 import { sentenceOf } from "../api/client.ts";
 import { newest } from "../api/latest.ts";
 import type { CheckContent, IdentifyRequest } from "../api/types.ts";
-import { h } from "../dom.ts";
+import { h, passFocus } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { fileNameOf } from "../plot/export.ts";
 import { addressOfCheck, formatRoute, sameCheck, WHOLE_LIST } from "../routes.ts";
@@ -43,9 +43,9 @@ const EMPTY: CheckRoute = { screen: "check", of: null, from: null, before: null,
 
 /** How many loops there are, and which are missing. */
 function aboutWords({ partial, failed }: CheckContent, size: string): string {
-  const stopped = partial ? "The check was stopped early: loops that it did not reach have no result." : "";
+  const stopped = failed ? `The check was stopped early: ${counted(failed, "loop")} not checked.` : "The check was stopped early: loops that it did not reach have no result.";
   const missing = failed ? `${counted(failed, "record")} of the batch could not be checked.` : "";
-  const rest = [stopped, missing].filter(Boolean).join(" ");
+  const rest = partial ? stopped : missing;
   return size && rest ? `${size}. ${rest}` : size + rest;
 }
 
@@ -68,10 +68,10 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
   const tools = h("p", { class: "actions check-tools" }, again, fresh, report.element, save);
   const form = checkForm(errors, { onCheck: () => void send(), onExample: () => void tryExample() });
   const progress = checkProgress(announce, async () => source?.cancel().catch(complain));
-  const before = beforeChoice((batch) => {
+  const before = beforeChoice(async (batch) => {
     route = { ...route, before: batch };
     events.onList(route);
-    source?.compare(batch);
+    await source?.compare(batch);
   });
   const list = workList(
     announce,
@@ -181,6 +181,7 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
 
   function show(): void {
     const part = partShown();
+    for (const one of parts.filter((other) => other !== part)) passFocus(one, heading);
     for (const one of parts) one.hidden = one !== part;
     const found = content();
     const row = part === loop.element && found ? workRows(found).find(({ place }) => place === route.loop) : undefined;
@@ -278,7 +279,7 @@ export function checkView(announce: (sentence: string) => void, events: CheckEve
         void earlier.look();
         if (next.from !== null) void fill(next.from).catch(complain);
       }
-      if (next.of !== null) source?.compare(next.before);
+      if (next.of !== null) void source?.compare(next.before);
       list.setView(next.list);
       show();
       if (element.isConnected) arrive(last);

@@ -229,7 +229,15 @@ test("a check that runs shows its progress, and what it has when it is cancelled
     await page.getByRole("button", { name: "Cancel" }).click();
     await rows(page).first().waitFor();
     await page.getByText("8 loops. The check was stopped early: loops that it did not reach have no result.").waitFor();
+    assert.equal(await page.evaluate(() => document.activeElement.tagName), "H1", "the button that had the focus is gone");
   }, routes);
+});
+
+test("a batch that was stopped says how many loops were not checked", async () => {
+  const stopped = { id: ID, name: "Unit 22", status: "ended", total: 8, counts: { queued: 0, running: 0, succeeded: 6, failed: 0, cancelled: 2 }, progress: { fraction: 1 }, cancel_requested: true, created_at: "2026-05-04T06:00:00Z", finished_at: null, links: {} };
+  await withBatch(`#/batches/${ID}/check`, () => true, async (page) => {
+    await page.getByText("8 loops. The check was stopped early: 2 loops not checked.", { exact: true }).waitFor();
+  }, { [`/v1/batches/${ID}`]: (route) => route.fulfill(json(stopped)) });
 });
 
 test("a long list comes in parts as it is scrolled, and each loop is found", async () => {

@@ -57,11 +57,13 @@ std::vector<bool> automatic_rows(const TaggedLoop& loop) {
     return out;
 }
 
-check::LoopQuestion question_about(TaggedLoop loop, double seconds) {
+check::LoopQuestion question_about(TaggedLoop loop, const std::string& time_unit) {
+    const double seconds = seconds_per(time_unit).value_or(1);
     check::LoopQuestion question;
     question.kind = kind_of_tag(loop.tag).kind;
     question.tag = std::move(loop.tag);
     question.seconds = seconds;
+    question.units.time = time_unit;
     question.record.automatic = automatic_rows(loop);
     if (loop.epoch) {
         const double zero = loop.t.front();
@@ -78,14 +80,14 @@ check::LoopQuestion question_about(TaggedLoop loop, double seconds) {
 ReadLoops read_recorded(RecordedLoops& recorded) {
     ReadLoops out;
     out.question.settings = recorded.settings;
-    const double seconds = seconds_per(recorded.time_unit.value_or("s")).value_or(1);
+    const std::string time_unit = recorded.time_unit.value_or("s");
     for (std::size_t i = 0; i < recorded.loops.size(); ++i) {
         TaggedLoop loop = std::exchange(recorded.loops[i], {});
         if (loop.fault) {
             out.unreadable.emplace_back(i, CheckedLoop{check::unreadable_loop(loop.tag, *loop.fault), {}});
             continue;
         }
-        out.question.loops.push_back(question_about(std::move(loop), seconds));
+        out.question.loops.push_back(question_about(std::move(loop), time_unit));
         out.places.push_back(i);
     }
     return out;

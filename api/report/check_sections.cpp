@@ -150,6 +150,7 @@ Html figures_of(const ReportInput& s, const JsonLocation& loop) {
     const JsonLocation performance = loop.at("performance"), service = loop.at("service"), quality = loop.at("quality");
     const std::vector<std::pair<const char*, std::string>> moves{{"mean_error", with_unit("Mean error", s.y)},
                                                                  {"variability", with_unit("Standard deviation", s.y)},
+                                                                 {"variability_share", "Its share of the range"},
                                                                  {"idle_index", "Idle index"},
                                                                  {"following", "Following"},
                                                                  {"travel", "Travel of the output (ranges/h)"},
@@ -196,6 +197,7 @@ Html figures_of(const ReportInput& s, const JsonLocation& loop) {
                                       {"sample_time", with_unit("Time between rows", s.time)},
                                       {"missing", "Share of rows without a measurement"},
                                       {"held", "Share of repeated measurements"},
+                                      {"at_limit", "Share of rows at an end of the measurement's range"},
                                       {"longest_gap", with_unit("Longest gap", s.time)},
                                       {"noise", with_unit("Noise of the measurement", s.y)},
                                       {"y_step", with_unit("Smallest step of the measurement; 0: none found", s.y)},

@@ -1,14 +1,21 @@
 #include "engine/check/action.h"
 
-#include "engine/number_text.h"
+#include <algorithm>
+#include <string_view>
+
+#include "engine/check/record_quality.h"
 
 namespace tunewright::check {
 namespace {
 
 std::string valve_work(const LoopCheck& check, const char* what) {
     std::string out = std::string("Have the valve and its positioner looked at: ") + what;
-    if (check.cause.size) out += " of about " + figure_text(*check.cause.size) + " of the output's unit";
+    if (check.cause.size) out += " of about " + check.units.u_text(*check.cause.size);
     return out + ". Do not tune before: settings only change the period of the cycle.";
+}
+
+bool has_remark(const LoopCheck& check, std::string_view code) {
+    return std::ranges::any_of(check.quality.remarks, [&](const Warning& remark) { return remark.code == code; });
 }
 
 }  // namespace
@@ -49,6 +56,10 @@ Action action_for(const LoopCheck& check, const std::string& source) {
         case Verdict::undetermined:
             return {test, Owner::control, "A test tells more: put the loop in manual for some periods, or step it."};
         case Verdict::insufficient_data:
+            if (has_remark(check, kMeasurementAtLimit))
+                return {check_range, Owner::instruments,
+                        "Look at the range of the transmitter: at its end the measurement does not move, and the loop "
+                        "does not see what it controls."};
             return {record_again, Owner::control,
                     check.quality.rows == 0 ? "Check this loop again." : "Record again, for longer or with raw values."};
     }

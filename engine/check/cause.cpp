@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/check/pace/loop_law.h"
 #include "engine/check/pace/loop_speed.h"
 #include "engine/check/pace/set_point_response.h"
 #include "engine/check/peak_search.h"
@@ -40,7 +39,8 @@ std::string percent(double share) { return figure_text(100 * share) + " %"; }
 
 class Diagnosis {
 public:
-    Diagnosis(const CauseQuestion& q, const std::stop_token& stop) : q_(q), stop_(stop), error_(q.samples.error()) {}
+    Diagnosis(const CauseQuestion& q, const std::stop_token& stop)
+        : q_(q), stop_(stop), error_(q.samples.error()), sign_(q.law.gain < 0 ? -1 : 1) {}
 
     Cause result() {
         if (auto found = by_service()) return *found;
@@ -72,7 +72,7 @@ private:
     void add(const char* code, double value, std::optional<double> limit, const std::string& detail) {
         evidence_.push_back({code, value, limit, detail});
     }
-    std::string time(double rows) const { return figure_text(rows * q_.samples.step); }
+    std::string time(double rows) const { return q_.units.time_text(rows * q_.samples.step); }
 
     std::optional<Cause> by_service() {
         const double frozen = q_.service.measurement_still, held = q_.service.output_still;
@@ -142,18 +142,16 @@ private:
         const double coarse = q_.quality.y_step / std::max(deviation(q_.samples.y), 1e-300);
         if (coarse < kCoarseStep) return std::nullopt;
         add("coarse-measurement", coarse, kCoarseStep,
-            "The measurement moves in steps of " + figure_text(q_.quality.y_step) + ", " + figure_text(coarse) +
+            "The measurement moves in steps of " + q_.units.y_text(q_.quality.y_step) + ", " + figure_text(coarse) +
                 " of its standard deviation.");
         return cause(Verdict::quantised, Confidence::sure);
     }
 
     void add_cycles_of_law() {
-        law_ = loop_law(error_, q_.samples.u, q_.samples.step);
-        sign_ = law_.gain < 0 ? -1 : 1;
         if (peak_.regularity > kClearlyRegular && peak_.share > kClearShare) return;
-        if (!(law_.explained > 0.5 && std::isfinite(law_.Ti) && law_.Ti > 0)) return;
+        if (!(q_.law.explained > 0.5 && std::isfinite(q_.law.Ti) && q_.law.Ti > 0)) return;
         for (const double cycles : kCyclesInTi) {
-            const double period = cycles * law_.Ti / q_.samples.step;
+            const double period = cycles * q_.law.Ti / q_.samples.step;
             if (period >= kShortestCycle && period <= double(q_.samples.size()) / kFewestCycles)
                 add_candidate({period, period, 0});
         }
@@ -187,8 +185,7 @@ private:
     }
 
     Cause of_valve(double band, double jump, bool sure, Figure period) {
-        add("valve-band", band, {},
-            "Its dead band and stick together are about " + figure_text(band) + " in the unit of the output.");
+        add("valve-band", band, {}, "Its dead band and stick together are about " + q_.units.u_text(band) + ".");
         Cause out = cause(Verdict::stiction, sure ? Confidence::sure : Confidence::likely, {Verdict::backlash});
         out.size = band;
         out.jump = jump;
@@ -280,8 +277,8 @@ private:
     /// The share of rows that are not just behind a move of the set point.
     double free_of_moves() const {
         const auto& r = q_.samples.r;
-        if (r.empty() || !std::isfinite(law_.Ti) || !(law_.Ti > 0)) return 1;
-        const auto reach = std::size_t(std::min(kMoveReach * law_.Ti / q_.samples.step, double(r.size())));
+        if (r.empty() || !std::isfinite(q_.law.Ti) || !(q_.law.Ti > 0)) return 1;
+        const auto reach = std::size_t(std::min(kMoveReach * q_.law.Ti / q_.samples.step, double(r.size())));
         std::size_t free = 0, since = reach + 1;
         for (std::size_t i = 0; i < r.size(); ++i) {
             since = i > 0 && r[i] != r[i - 1] ? 0 : since + 1;
@@ -289,6 +286,9 @@ private:
         }
         return double(free) / double(r.size());
     }
+
+    /// Such a level is slow on purpose.
+    bool smooths_flows() const { return q_.loop.averaging.value_or(false); }
 
     /// Moves of the set point show by themselves how quick the loop is.
     std::optional<Cause> by_set_point() {
@@ -298,9 +298,9 @@ private:
         const double ratio = response->rise / response->dead_time;
         add("set-point-response", ratio, kSluggishRise,
             "After " + std::to_string(response->moves) + " moves of the set point the measurement needs " +
-                figure_text(response->rise) + " to 63 %, " + figure_text(ratio) +
+                q_.units.time_text(response->rise) + " to 63 %, " + figure_text(ratio) +
                 " times the time until it begins; a loop tuned for its dead time needs 1 to 2 times.");
-        if (ratio < kSluggishRise) return std::nullopt;
+        if (ratio < kSluggishRise || smooths_flows()) return std::nullopt;
         return cause(Verdict::sluggish,
                      response->moves > 1 && ratio > 1.5 * kSluggishRise ? Confidence::sure : Confidence::likely);
     }
@@ -333,10 +333,10 @@ private:
     const std::optional<LoopSpeed>& speed() {
         if (asked_speed_) return speed_;
         asked_speed_ = true;
-        if (!(law_.explained >= kKnownLaw && std::isfinite(law_.Ti) && law_.Ti > 0)) return speed_;
+        if (!(q_.law.explained >= kKnownLaw && std::isfinite(q_.law.Ti) && q_.law.Ti > 0)) return speed_;
         std::vector<double> y(q_.samples.y);
         for (double& value : y) value *= sign_;
-        speed_ = loop_speed(y, q_.samples.u, std::abs(law_.gain), law_.Ti, q_.samples.step, stop_);
+        speed_ = loop_speed(y, q_.samples.u, std::abs(q_.law.gain), q_.law.Ti, q_.samples.step, stop_);
         return speed_;
     }
 
@@ -361,7 +361,7 @@ private:
             add("pace", found->pace, {},
                 "Crossover frequency times dead time is about " + figure_text(found->pace) +
                     ": 0.5 is quick, below 0.19 the loop is slower than its dead time asks.");
-            if (found->slow >= kSlow && tells_slow(*found)) {
+            if (found->slow >= kSlow && tells_slow(*found) && !smooths_flows()) {
                 add("slow", found->slow, kSlow,
                     "By the reaction to " + std::to_string(found->load_steps) +
                         " steps of the load the loop is sluggish with a likelihood of " + percent(found->slow) + ".");
@@ -370,7 +370,7 @@ private:
         }
         if (crossings() < kFewestCrossings) return few_crossings();
         add("no-fault", 0, {}, "No oscillation, no limit and no fault of the valve is seen.");
-        const bool doubtful = !found || found->slow >= kPerhapsSlow;
+        const bool doubtful = !smooths_flows() && (!found || found->slow >= kPerhapsSlow);
         return cause(Verdict::healthy, Confidence::likely,
                      doubtful ? std::vector{Verdict::sluggish} : std::vector<Verdict>{});
     }
@@ -378,11 +378,11 @@ private:
     const CauseQuestion& q_;
     const std::stop_token& stop_;
     std::vector<double> error_, measurement_;
+    double sign_;  // of the plant's gain
     Peak output_, of_error_, peak_;
     bool drifts_ = false;
-    double line_ = 0, sign_ = 1;
+    double line_ = 0;
     std::vector<PeriodCandidate> candidates_;
-    LoopLaw law_;
     std::optional<ValveBank> bank_;
     bool asked_speed_ = false;
     std::optional<LoopSpeed> speed_;

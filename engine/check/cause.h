@@ -19,6 +19,8 @@ struct CauseQuestion {
     std::array<double, 2> u_range{};
     const RecordQuality& quality;
     const ServiceShares& service;
+    const LoopLaw& law;
+    const UnitNames& units;
 };
 
 Cause cause_of(const CauseQuestion& question, const std::stop_token& stop);

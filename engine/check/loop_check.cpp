@@ -8,10 +8,12 @@
 #include "engine/check/drawing.h"
 #include "engine/check/movement.h"
 #include "engine/check/oscillation.h"
+#include "engine/check/pace/given_law.h"
 #include "engine/check/record_quality.h"
 #include "engine/check/samples.h"
 #include "engine/check/service.h"
 #include "engine/check/shape.h"
+#include "engine/number_text.h"
 
 namespace tunewright::check {
 namespace {
@@ -35,6 +37,17 @@ std::optional<Error> refused(const LoopQuestion& question) {
     return std::nullopt;
 }
 
+std::string with_unit(double value, const std::string& unit) {
+    return figure_text(value) + (unit.empty() ? "" : " " + unit);
+}
+
+/// An output without a unit is stated against its range.
+UnitNames units_of(const LoopQuestion& question, const std::array<double, 2>& u_range) {
+    UnitNames units = question.units;
+    if (units.u.empty()) units.u = "of the output's " + text(u_range[0]) + " to " + text(u_range[1]);
+    return units;
+}
+
 /// The period that the cause knows is the more exact one; a cycle that is too irregular for the spectrum is one
 /// nevertheless.
 void take_period(LoopCheck& check) {
@@ -52,6 +65,10 @@ void take_period(LoopCheck& check) {
 
 }  // namespace
 
+std::string UnitNames::time_text(double value) const { return with_unit(value, time); }
+std::string UnitNames::y_text(double value) const { return with_unit(value, y); }
+std::string UnitNames::u_text(double value) const { return with_unit(value, u); }
+
 Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_token& stop) {
     if (auto error = refused(question)) return *error;
     LoopCheck check;
@@ -60,9 +77,13 @@ Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_tok
     check.weight = question.weight;
     const Rows rows = rows_of(question.record);
     const Samples samples = even_samples(rows);
-    check.quality = quality_of(rows, samples);
+    check.quality = quality_of(rows, samples, question.y_range);
     const auto u_range = output_range(question, samples);
-    check.service = service_of(samples, u_range, check.quality.u_step);
+    check.units = units_of(question, u_range);
+    ChosenLaw law = chosen_law(question, samples, u_range, check.units);
+    check.law = law.law;
+    if (law.differs) check.quality.remarks.push_back(std::move(*law.differs));
+    check.service = service_of(samples, u_range, check.quality.u_step, check.law);
     if (!samples.y.empty()) {
         check.performance = performance_of(samples, u_range, question);
         check.trend = trend_of(samples);
@@ -71,7 +92,8 @@ Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_tok
         const OscillationStudy study = study_oscillation(samples);
         check.oscillation = study.found;
         if (stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The check was stopped."};
-        check.cause = cause_of({question, samples, study, u_range, check.quality, check.service}, stop);
+        check.cause =
+            cause_of({question, samples, study, u_range, check.quality, check.service, check.law, check.units}, stop);
         if (stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The check was stopped."};
         take_period(check);
         draw_details(samples, study, check);

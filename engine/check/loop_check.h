@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/check/pace/loop_law.h"
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
 #include "engine/figure.h"
@@ -38,18 +39,28 @@ enum class Verdict {
 /// `open`: the verdict is undetermined or insufficient_data.
 enum class Confidence { sure, likely, open };
 
+/// Names of the units, for sentences; empty: unknown.
+struct UnitNames {
+    std::string time, y, u;
+
+    std::string time_text(double value) const;  ///< "54.0 s"
+    std::string y_text(double value) const;
+    std::string u_text(double value) const;
+};
+
 /// One loop's record, with what its owner knows. Units: y and r in the measurement's unit, u in the output's, time in
 /// the record's.
 struct LoopQuestion {
     std::string tag;
     LoopKind kind = LoopKind::unknown;
-    bool averaging = false;  ///< a level that smooths flows: its variability is its purpose
+    std::optional<bool> averaging;  ///< a level that smooths flows: its variability is its purpose; empty: not known
     Record record;
     std::optional<double> start;                            ///< s since 1970 of t = 0
     std::optional<std::array<double, 2>> y_range, u_range;  ///< of the transmitter, of the output
     std::optional<ParallelPid> controller;                  ///< today's settings
     std::optional<double> weight;                           ///< money per unit of |e| and hour
     double seconds = 1;                                     ///< in a unit of the record's time
+    UnitNames units;
 };
 
 /// How good the record is. Shares are of the rows or of the time, 0 to 1.
@@ -63,6 +74,7 @@ struct RecordQuality {
     double noise = 0;         ///< standard deviation from sample to sample, y
     double y_step = 0;        ///< grid of the measurement, y; 0: none found
     double u_step = 0;        ///< grid of the output, u; 0: none found
+    Figure at_limit;          ///< share of rows with a measurement at an end of the transmitter's range
     bool compressed = false;  ///< most rows lie on stairs or straight lines of a historian
     bool enough = true;       ///< for a diagnosis
     std::vector<Warning> remarks;
@@ -119,13 +131,14 @@ struct HarrisRange {
 
 struct PerformanceFigures {
     OrReason<HarrisRange> harris;
-    Figure idle_index;       ///< -1 to 1: above 0.4 sluggish, below -0.4 quick (Hägglund 1999)
-    double variability = 0;  ///< standard deviation of the error, y
-    double mean_error = 0;   ///< mean magnitude of the error, y
-    double independent = 0;  ///< values of the error that count as independent
-    Figure following;        ///< variance of the error after set-point moves relative to that of the moves
-    double travel = 0;       ///< of the output, share of its range per hour
-    double reversals = 0;    ///< of the output, per hour
+    Figure idle_index;         ///< -1 to 1: above 0.4 sluggish, below -0.4 quick (Hägglund 1999)
+    double variability = 0;    ///< standard deviation of the error, y
+    Figure variability_share;  ///< the same over the range of the measurement
+    double mean_error = 0;     ///< mean magnitude of the error, y
+    double independent = 0;    ///< values of the error that count as independent
+    Figure following;          ///< variance of the error after set-point moves relative to that of the moves
+    double travel = 0;         ///< of the output, share of its range per hour
+    double reversals = 0;      ///< of the output, per hour
 };
 
 /// What to do first, and who does it.
@@ -181,6 +194,8 @@ struct LoopCheck {
     PerformanceFigures performance;
     Action action;
     std::optional<double> weight;
+    UnitNames units;  ///< of the sentences
+    LoopLaw law;
     Shape shape;
     Trend trend;            ///< the whole record, 2 kTrendStretches points at most
     Trend excerpt;          ///< its last periods, row by row

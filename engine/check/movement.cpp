@@ -28,8 +28,10 @@ int longest_delay(std::span<const double> error) {
 }
 
 OrReason<HarrisRange> harris_range(const Samples& samples, const LoopQuestion& question) {
-    if (question.averaging)
-        return {std::nullopt, "The level is there to smooth the flow: its variance is its purpose."};
+    if (question.averaging.value_or(question.kind == LoopKind::level))
+        return {std::nullopt, question.averaging
+                                  ? "The level is there to smooth the flow: its variance is its purpose."
+                                  : "A level may be there to smooth flows. Give averaging false if it must be held."};
     if (samples.size() < kFewestRows) return {std::nullopt, "The record is too short."};
     const auto error = samples.error();
     if (!(deviation(error) > 0)) return {std::nullopt, "The error is constant."};
@@ -96,6 +98,9 @@ PerformanceFigures performance_of(const Samples& samples, const std::array<doubl
     PerformanceFigures out;
     const auto error = samples.error();
     out.variability = deviation(error);
+    out.variability_share = question.y_range
+                                ? Figure(out.variability / ((*question.y_range)[1] - (*question.y_range)[0]))
+                                : no_figure("The range of the measurement is not given.");
     double sum = 0;
     for (const double e : error) sum += std::abs(e);
     out.mean_error = sum / static_cast<double>(error.size());

@@ -46,6 +46,15 @@ double longest_gap(const Rows& rows) {
     return longest;
 }
 
+Figure measurement_at_limit(std::span<const double> y, const std::optional<std::array<double, 2>>& range) {
+    if (!range) return no_figure("The range of the measurement is not given.");
+    if (y.empty()) return no_figure("The record has no measurement.");
+    const auto [low, high] = *range;
+    const double near = kAtLimit * (high - low);
+    const auto at = std::ranges::count_if(y, [&](double value) { return value <= low + near || value >= high - near; });
+    return static_cast<double>(at) / static_cast<double>(y.size());
+}
+
 std::string percent(double share) { return text(std::round(100 * share)) + " %"; }
 
 void remark(RecordQuality& q, const char* code, std::string detail, bool fatal) {
@@ -57,6 +66,11 @@ void judge(RecordQuality& q, const Samples& samples) {
     if (q.missing > kMostMissing)
         remark(q, "measurement-missing",
                percent(q.missing) + " of the rows have no measurement. Export the raw values, or another day.", true);
+    if (q.at_limit.value_or(0) >= kSaturatedShare)
+        remark(q, kMeasurementAtLimit,
+               "The measurement is at an end of its range for " + percent(*q.at_limit) +
+                   " of the time, where it does not show the process: no cause is concluded.",
+               true);
     if (samples.size() < kFewestRows)
         remark(q, "short-record",
                "The record has " + std::to_string(samples.size()) + " usable rows; a check needs at least " +
@@ -77,7 +91,8 @@ void judge(RecordQuality& q, const Samples& samples) {
 
 }  // namespace
 
-RecordQuality quality_of(const Rows& rows, const Samples& samples) {
+RecordQuality quality_of(const Rows& rows, const Samples& samples,
+                         const std::optional<std::array<double, 2>>& y_range) {
     RecordQuality q;
     q.rows = static_cast<int>(rows.t.size());
     q.sample_time = rows.step;
@@ -93,6 +108,7 @@ RecordQuality quality_of(const Rows& rows, const Samples& samples) {
         const bool stairs = q.held > kStairs && levels(samples.y) > kFewLevels;
         q.compressed = stairs || straight_share(samples.y) > kStraight;
     }
+    q.at_limit = measurement_at_limit(samples.y, y_range);
     judge(q, samples);
     return q;
 }

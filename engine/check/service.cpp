@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/check/pace/loop_law.h"
 #include "engine/check/thresholds.h"
 
 namespace tunewright::check {
@@ -57,9 +56,14 @@ std::array<double, 2> output_range(const LoopQuestion& question, const Samples& 
     return {low - beyond, high + beyond};
 }
 
-std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range, double u_step) {
+std::array<double, 2> limit_shares(const Samples& samples, const std::array<double, 2>& u_range) {
+    const double near = kAtLimit * (u_range[1] - u_range[0]);
+    return {limit_share(samples, u_range[0], near), limit_share(samples, u_range[1], near)};
+}
+
+std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range, double u_step,
+                              const LoopLaw& law) {
     std::vector<char> held(samples.size(), 0);
-    const LoopLaw law = loop_law(samples.error(), samples.u, samples.step);
     const double near = kAtLimit * (u_range[1] - u_range[0]);
     for (const EqualRun& run : equal_runs(samples.u)) {
         const double u = samples.u[run.begin];
@@ -72,12 +76,13 @@ std::vector<char> held_output(const Samples& samples, const std::array<double, 2
     return held;
 }
 
-ServiceShares service_of(const Samples& samples, const std::array<double, 2>& u_range, double u_step) {
+ServiceShares service_of(const Samples& samples, const std::array<double, 2>& u_range, double u_step,
+                         const LoopLaw& law) {
     ServiceShares shares;
-    const double near = kAtLimit * (u_range[1] - u_range[0]);
-    shares.saturated_low = limit_share(samples, u_range[0], near);
-    shares.saturated_high = limit_share(samples, u_range[1], near);
-    shares.output_still = share(held_output(samples, u_range, u_step));
+    const auto [low, high] = limit_shares(samples, u_range);
+    shares.saturated_low = low;
+    shares.saturated_high = high;
+    shares.output_still = share(held_output(samples, u_range, u_step, law));
     shares.measurement_still = still_share(samples.y, samples.u);
     if (samples.automatic.empty()) {
         shares.automatic = no_figure("The record has no column of the mode.");

@@ -1,6 +1,7 @@
 // For what share of the time a loop was controlled, held, or at a limit.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "engine/check/loop_check.h"
@@ -9,10 +10,15 @@
 namespace tunewright::check {
 
 /// 1 for each sample whose output rests for long, away from its limits: nobody controls there.
-std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range, double u_step);
+std::vector<char> held_output(const Samples& samples, const std::array<double, 2>& u_range, double u_step,
+                              const LoopLaw& law);
+
+/// Shares of the samples with the output at its lower and at its upper limit.
+std::array<double, 2> limit_shares(const Samples& samples, const std::array<double, 2>& u_range);
 
 /// `u_step`: the grid of the output (RecordQuality::u_step).
-ServiceShares service_of(const Samples& samples, const std::array<double, 2>& u_range, double u_step);
+ServiceShares service_of(const Samples& samples, const std::array<double, 2>& u_range, double u_step,
+                         const LoopLaw& law);
 
 /// The range of the output: as given, else 0 to 100, or to 1 where no sample exceeds 1; for an output in another unit
 /// somewhat more than what was seen.

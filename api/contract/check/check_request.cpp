@@ -33,7 +33,8 @@ Codec<std::array<double, 2>> low_and_high() {
 const Description<LoopRanges>& ranges_contract() {
     static const auto description = [] {
         Description<LoopRanges> d("LoopRanges", "Ranges of the transmitter and of the output, [low, high].");
-        d.field("pv", &LoopRanges::pv, maybe(low_and_high()), "Of the measurement.", {.unit = "y"})
+        d.field("pv", &LoopRanges::pv, maybe(low_and_high()), "Of the measurement: at its ends it shows nothing.",
+                {.unit = "y"})
             .field("op", &LoopRanges::op, maybe(low_and_high()), "Of the output; 0 to 100 if not given.",
                    {.unit = "u"});
         return d;
@@ -72,9 +73,11 @@ const Description<GivenLoop>& loop_contract() {
                                             {"level", level},
                                             {"temperature", temperature},
                                             {"composition", composition}}),
-                   "What it measures; some valve tests do not hold for levels.")
-            .field("averaging", &L::averaging, boolean(),
-                   "true: a level that is there to smooth flows. Its variance is its purpose and is not judged.")
+                   "What it measures. The Harris range of a level is judged only with averaging false; the other kinds "
+                   "are shown and filtered by, and change no conclusion.")
+            .field("averaging", &L::averaging, maybe(boolean()),
+                   "true: a level that is there to smooth flows. Its variance and its slowness are its purpose and are "
+                   "not judged. false: a level that must be held.")
             .field("record", &L::record, maybe(object(record_contract())),
                    "Its record: measurement y, output u and, if known, set point r and mode; instead of csv.")
             .field("csv", &L::csv, maybe(text(kMaxCsvLength)), "The record as CSV text; instead of record.")
@@ -84,7 +87,9 @@ const Description<GivenLoop>& loop_contract() {
                    "Date and time of t = 0, ISO 8601: loops with a start are compared on one clock.")
             .field("range", &L::range, object(ranges_contract()), "Ranges of measurement and output.",
                    {.no_default = true})
-            .field("controller", &L::controller, maybe(one_of(controller_contract())), "Today's settings, if known.")
+            .field("controller", &L::controller, maybe(one_of(controller_contract())),
+                   "Today's settings, if known. Their gain and Ti are used instead of those that the record shows, "
+                   "unless it clearly shows others (remark controller-differs).")
             .field("weight", &L::weight, maybe(number({.minimum = 0})),
                    "Money that a mean error of one unit of y costs in an hour: the work list is then ordered by money.")
             .check(check_loop_members);
@@ -140,6 +145,7 @@ OrReason<check::LoopQuestion> question_of(GivenLoop loop, const Units& units, st
     question.u_range = loop.range.op;
     if (loop.controller) question.controller = gains(*loop.controller);
     question.weight = loop.weight;
+    question.units = {units.time_or_default(), units.y.value_or(""), units.u.value_or("")};
     question.seconds = seconds_per(units.time_or_default()).value_or(1);
     GivenRecord given = loop.record ? std::move(*loop.record) : GivenRecord{};
     if (loop.csv) {

@@ -23,7 +23,7 @@ struct LoopRanges {
 struct GivenLoop {
     std::optional<std::string> tag;
     check::LoopKind kind = check::LoopKind::unknown;
-    bool averaging = false;
+    std::optional<bool> averaging;
     std::optional<GivenRecord> record;
     std::optional<std::string> csv, time_unit;
     std::optional<ColumnChoices> columns;

@@ -5,7 +5,6 @@
 #include "api/contract/controller.h"
 #include "api/contract/plant/plant.h"
 #include "api/contract/result/evaluation.h"
-#include "engine/check/action.h"
 
 namespace tunewright::api {
 namespace {
@@ -35,10 +34,13 @@ const Description<RecordQuality>& quality_contract() {
                    {.unit = "y"})
             .field("y_step", &Q::y_step, answered(), "Grid of the measurement; 0: none found.", {.unit = "y"})
             .field("u_step", &Q::u_step, answered(), "Grid of the output; 0: none found.", {.unit = "u"})
+            .field("at_limit", &Q::at_limit, figure(),
+                   "Share of rows with a measurement at an end of range.pv; from 0.05 on no cause is concluded.")
             .field("compressed", &Q::compressed, only_answered(boolean()),
                    "True if the historian stored only some of the values.")
             .field("enough", &Q::enough, only_answered(boolean()), "False: no diagnosis is possible.")
-            .field("remarks", &Q::remarks, list_of(answer(warning_contract())), "What is wrong with the record.");
+            .field("remarks", &Q::remarks, list_of(answer(warning_contract())), "What is wrong with the record.")
+            .why_null("The range of the measurement is not given.");
         return d;
     }();
     return description;
@@ -165,6 +167,8 @@ const Description<PerformanceFigures>& loop_performance_contract() {
             .field("idle_index", &P::idle_index, figure(),
                    "-1 to 1: above 0.4 sluggish, below -0.4 quick (Hägglund 1999).")
             .field("variability", &P::variability, answered(), "Standard deviation of the error.", {.unit = "y"})
+            .field("variability_share", &P::variability_share, figure(),
+                   "Standard deviation of the error over the range of the measurement.")
             .field("mean_error", &P::mean_error, answered(), "Mean magnitude of the error.", {.unit = "y"})
             .field("independent", &P::independent, answered(), "Values of the error that count as independent.")
             .field("following", &P::following, figure(),
@@ -177,18 +181,20 @@ const Description<PerformanceFigures>& loop_performance_contract() {
     return description;
 }
 
+Codec<Owner> action_owner() {
+    using enum Owner;
+    return choice<Owner>({{"nobody", nobody},
+                          {"control", control},
+                          {"instruments", instruments},
+                          {"process", process},
+                          {"operations", operations}});
+}
+
 const Description<Action>& action_contract() {
     static const auto description = [] {
-        using enum Owner;
         Description<Action> d("CheckAction", "What to do first.");
         d.field("code", &Action::code, only_answered(check_action()), "For programs.")
-            .field("owner", &Action::owner,
-                   only_answered(choice<Owner>({{"nobody", nobody},
-                                                {"control", control},
-                                                {"instruments", instruments},
-                                                {"process", process},
-                                                {"operations", operations}})),
-                   "Whose work it is.")
+            .field("owner", &Action::owner, only_answered(action_owner()), "Whose work it is.")
             .field("detail", &Action::detail, words(), "A sentence.");
         return d;
     }();
@@ -227,7 +233,7 @@ const Description<LoopCure>& cure_contract() {
                 [member](const C& cure) { return !(cure.*member); });
         };
         pid("settings", &C::settings, "The new settings; left out if the record does not suffice for them.");
-        pid("today", &C::today, "Today's settings, as the record shows them.");
+        pid("today", &C::today, "Today's settings, as given or as the record shows them.");
         d.field("plant", &C::plant, only_answered(maybe(one_of(plant_contract()))), "The identified plant.")
             .field("worst_Ms", &C::worst_Ms, figure(), "The largest Ms on the plants that fit the record.")
             .field("error_ratio", &C::error_ratio, figure(),
@@ -428,7 +434,10 @@ check::LoopCheck read_loop_check(const Json& loop) {
             {.period = number_in(period, "period"), .share = number_in(period, "share")});
     }
     read_cause(loop.value("cause", Json::object()), check.cause, reader);
-    check.action = action_for(check);  // a function of the cause
+    const Json action = loop.value("action", Json::object());
+    if (action.contains("code")) check_action().read(action["code"], check.action.code, reader);
+    if (action.contains("owner")) action_owner().read(action["owner"], check.action.owner, reader);
+    check.action.detail = action.value("detail", "");
     if (loop.contains("shape")) shape_contract().read(loop["shape"], check.shape, reader);
     return check;
 }

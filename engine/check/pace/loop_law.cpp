@@ -15,7 +15,7 @@ constexpr double kClearlyBetter = 0.002;  // of the share explained: for a longe
 }  // namespace
 
 LoopLaw loop_law(std::span<const double> error, std::span<const double> output, double step) {
-    LoopLaw best{0, std::numeric_limits<double>::infinity(), 0};
+    LoopLaw best;
     const std::size_t n = output.size();
     std::vector<double> sum(n, 0.0);
     for (std::size_t i = 0; i < n; ++i) sum[i] = (i > 0 ? sum[i - 1] : 0) + error[i];
@@ -38,11 +38,21 @@ LoopLaw loop_law(std::span<const double> error, std::span<const double> output, 
         const Eigen::Vector3d scale = A.diagonal().cwiseSqrt().array() + 1e-300;
         const Eigen::Matrix3d scaled =
             (A.array() / (scale * scale.transpose()).array()).matrix() + 1e-10 * Eigen::Matrix3d::Identity();
-        const Eigen::Vector3d x = (scaled.inverse() * b.cwiseQuotient(scale)).cwiseQuotient(scale);
+        const Eigen::Matrix3d inverse = scaled.inverse();
+        const Eigen::Vector3d x = (inverse * b.cwiseQuotient(scale)).cwiseQuotient(scale);
         const double left = squares - 2 * x.dot(b) + x.dot(A * x);
         const double explained = 1 - std::max(0.0, left) / variance;
-        if (explained > best.explained + kClearlyBetter)
-            best = {x[0], x[1] != 0 ? x[0] / x[1] : std::numeric_limits<double>::infinity(), explained};
+        if (!(explained > best.explained + kClearlyBetter)) continue;
+        best = {.gain = x[0],
+                .Ti = x[1] != 0 ? x[0] / x[1] : std::numeric_limits<double>::infinity(),
+                .explained = explained};
+        // Differences over M rows overlap: only every M-th is independent.
+        const double noise = std::sqrt(std::max(0.0, left) / count * double(M));
+        const auto relative_error = [&](int k) {
+            return noise * std::sqrt(inverse(k, k)) / (scale[k] * std::abs(x[k]) + 1e-300);
+        };
+        best.gain_error = relative_error(0);
+        best.Ti_error = std::hypot(best.gain_error, relative_error(1));
     }
     return best;
 }

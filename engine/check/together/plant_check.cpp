@@ -61,11 +61,11 @@ Rank rank_of(std::size_t index, const LoopCheck& check) {
 
 /// What a loop is first ordered by: sources of others, then other loops with a cause, disturbed, open and healthy ones.
 int urgency(const LoopCheck& check, bool source) {
-    switch (check.cause.verdict) {
-        case Verdict::healthy: return 0;
-        case Verdict::insufficient_data:
-        case Verdict::undetermined: return 1;
-        case Verdict::external: return 2;
+    switch (check.action.code) {
+        case ActionCode::none: return 0;
+        case ActionCode::record_again:
+        case ActionCode::test: return 1;
+        case ActionCode::find_source: return 2;
         default: return source ? 4 : 3;
     }
 }

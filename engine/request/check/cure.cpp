@@ -10,6 +10,11 @@
 namespace tunewright {
 namespace {
 
+std::optional<IdealPid> ideal_pid(const ParallelPid& given) {
+    const auto ideal = to_ideal(given);
+    return ideal ? std::optional(*ideal) : std::nullopt;
+}
+
 LoopCure with_test(const check::LoopCheck& check, const std::string& why, std::optional<IdealPid> today) {
     LoopCure cure;
     cure.today = std::move(today);
@@ -61,10 +66,11 @@ std::optional<LoopCure> cure_of(const check::LoopQuestion& question, const check
     if (question.u_range) request.record->u_limits = question.u_range;
     request.evaluate.points = 0;
     std::optional<IdealPid> today;
-    if (auto recorded = recorded_controller(*request.record, nullptr)) {
+    if (check.law.given)
+        today = ideal_pid(*question.controller);
+    else if (auto recorded = recorded_controller(*request.record, nullptr))
         today = recorded->found.pid;
-        request.baseline = GivenController(*today);
-    }
+    if (today) request.baseline = GivenController(*today);
     const auto result = tune(request, {control.stop, nullptr, control.now_ms});
     if (!result) return with_test(check, result.error().message, std::move(today));
     const TuningEntry* entry = design_of(*result);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/number_text.h"
-
 namespace tunewright {
 namespace {
 
@@ -57,9 +55,9 @@ TestPlan plan_test(const check::LoopCheck& check) {
     plan.beyond_seen = plan.size > (set_point ? y_range : u_range);
     plan.detail =
         std::string(set_point ? "In automatic, step the set point by " : "In manual, step the output by ") +
-        figure_text(plan.size) + " up and down, " + std::to_string(kSteps) + " steps, each held for " +
-        figure_text(plan.hold) + ": with the noise and the load of this record the gain then has a standard " +
-        "error of a tenth." +
+        (set_point ? check.units.y_text(plan.size) : check.units.u_text(plan.size)) + " up and down, " +
+        std::to_string(kSteps) + " steps, each held for " + check.units.time_text(plan.hold) +
+        ": with the noise and the load of this record the gain then has a standard " + "error of a tenth." +
         (plan.beyond_seen ? " That is more than the record's own range: ask the operator, or take smaller and "
                             "more steps."
                           : "");

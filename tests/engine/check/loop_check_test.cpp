@@ -12,15 +12,24 @@
 namespace tunewright::check {
 namespace {
 
-LoopCheck checked(const Record& record, LoopKind kind = LoopKind::unknown) {
+LoopQuestion question_about(Record record) {
     LoopQuestion question;
     question.tag = "loop";
-    question.kind = kind;
-    question.record = record;
+    question.record = std::move(record);
     question.u_range = {{0, 100}};
+    return question;
+}
+
+LoopCheck checked(const LoopQuestion& question) {
     auto found = check_loop(question, {});
     EXPECT_TRUE(found);
     return *found;
+}
+
+LoopCheck checked(const Record& record) { return checked(question_about(record)); }
+
+bool has_remark(const LoopCheck& check, const std::string& code) {
+    return std::ranges::any_of(check.quality.remarks, [&](const Warning& remark) { return remark.code == code; });
 }
 
 LoopSetUp drawn_loop(test::Random& random) {
@@ -188,6 +197,94 @@ TEST(LoopCheck, TravelAndReversalsAreThoseOfTheirDefinition) {
     const LoopCheck check = checked(record);
     EXPECT_NEAR(check.performance.travel, 35 * 0.1, 0.01);
     EXPECT_NEAR(check.performance.reversals, 34, 0.1);
+}
+
+TEST(LoopCheck, AMeasurementAtTheEndOfItsRangeComesBeforeEveryCause) {
+    LoopSetUp s;
+    s.band = 4;
+    s.jump = 3;
+    Record record = simulated(s, 7);
+    std::vector<double> sorted = record.y;
+    std::ranges::sort(sorted);
+    const double low = 0, top = sorted[sorted.size() * 9 / 10];
+    for (double& y : record.y) y = std::min(y, top);
+    LoopQuestion question = question_about(record);
+    EXPECT_FALSE(checked(question).quality.at_limit);
+    question.y_range = {{low, top}};
+    const LoopCheck check = checked(question);
+    ASSERT_TRUE(check.quality.at_limit);
+    EXPECT_GE(*check.quality.at_limit, 0.1);
+    EXPECT_TRUE(has_remark(check, "measurement-at-limit"));
+    EXPECT_EQ(check.cause.verdict, Verdict::insufficient_data);
+    EXPECT_EQ(check.action.code, ActionCode::check_range);
+    EXPECT_EQ(check.action.owner, Owner::instruments);
+    EXPECT_NEAR(*check.performance.variability_share, check.performance.variability / (top - low), 1e-12);
+    question.y_range = {{0, 200}};
+    EXPECT_EQ(*checked(question).quality.at_limit, 0);
+    EXPECT_EQ(checked(question).cause.verdict, checked(record).cause.verdict);
+}
+
+TEST(LoopCheck, GivenSettingsAreUsedUnlessTheRecordShowsOthers) {
+    int silent = 0, told = 0;
+    constexpr int kLoops = 12;
+    for (std::uint64_t seed = 300; seed < 300 + kLoops; ++seed) {
+        test::Random random(seed);
+        LoopSetUp s = drawn_loop(random);
+        const double tau = s.slowness * s.plant.L;
+        s.Kp = s.plant.T / (s.plant.K * (tau + s.plant.L));
+        s.Ti = std::min(s.plant.T, 4 * (tau + s.plant.L));
+        LoopQuestion question = question_about(simulated(s, seed));
+        const auto law_with = [&](double gain, double Ti) {
+            question.controller = ParallelPid{.Kp = gain, .Ki = gain / Ti};
+            return checked(question);
+        };
+        const LoopCheck right = law_with(s.Kp, s.Ti);
+        EXPECT_TRUE(right.law.given);
+        silent += has_remark(right, "controller-differs") ? 0 : 1;
+        EXPECT_DOUBLE_EQ(right.law.Ti, s.Ti);
+        const LoopCheck gain = law_with(2 * s.Kp, s.Ti), minus = law_with(-s.Kp, s.Ti), Ti = law_with(s.Kp, 3 * s.Ti);
+        for (const LoopCheck* check : {&gain, &minus, &Ti}) {
+            told += has_remark(*check, "controller-differs") ? 1 : 0;
+            EXPECT_NE(check->law.given, has_remark(*check, "controller-differs"));
+        }
+    }
+    EXPECT_EQ(silent, kLoops);
+    EXPECT_GE(told, 3 * kLoops * 9 / 10);
+}
+
+TEST(LoopCheck, SentencesHaveTheUnitsOfTheRecord) {
+    LoopSetUp s;
+    s.band = 4;
+    s.jump = 3;
+    LoopQuestion question = question_about(simulated(s, 7));
+    const auto sentences = [&] {
+        const LoopCheck check = checked(question);
+        std::string all = check.action.detail;
+        for (const Evidence& evidence : check.cause.evidence) all += " " + evidence.detail;
+        return all;
+    };
+    EXPECT_NE(sentences().find(" of the output's 0 to 100."), std::string::npos) << sentences();
+    question.units = {"min", "degC", "mA"};
+    EXPECT_NE(sentences().find(" min and a regularity"), std::string::npos) << sentences();
+    EXPECT_NE(sentences().find(" mA."), std::string::npos) << sentences();
+    EXPECT_EQ(sentences().find("output's 0"), std::string::npos) << sentences();
+}
+
+TEST(LoopCheck, ALevelIsJudgedOnlyIfItMustBeHeld) {
+    LoopSetUp slow;
+    slow.slowness = 16;
+    slow.set_point_moves = 4;
+    LoopQuestion question = question_about(simulated(slow, 4));
+    EXPECT_TRUE(checked(question).performance.harris);
+    EXPECT_EQ(checked(question).cause.verdict, Verdict::sluggish);
+    question.kind = LoopKind::level;
+    EXPECT_FALSE(checked(question).performance.harris);
+    question.averaging = false;
+    EXPECT_TRUE(checked(question).performance.harris);
+    EXPECT_EQ(checked(question).cause.verdict, Verdict::sluggish);
+    question.averaging = true;
+    EXPECT_FALSE(checked(question).performance.harris);
+    EXPECT_NE(checked(question).cause.verdict, Verdict::sluggish);
 }
 
 }  // namespace

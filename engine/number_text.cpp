@@ -25,4 +25,8 @@ std::string figure_text(double x, int digits) {
 
 std::string exact_text(double x) { return fmt::format("{}", x); }
 
+std::string counted(int count, const std::string& one) {
+    return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
 }  // namespace tunewright

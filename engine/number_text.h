@@ -15,4 +15,7 @@ std::string figure_text(double x, int digits = 3);
 /// The shortest decimal that reads back as the same double: "0.1", "1e-300".
 std::string exact_text(double x);
 
+/// "1 row", "3 rows".
+std::string counted(int count, const std::string& one);
+
 }  // namespace tunewright

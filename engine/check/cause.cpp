@@ -77,12 +77,18 @@ private:
     std::optional<Cause> by_service() {
         const double frozen = q_.service.measurement_still, held = q_.service.output_still;
         const double manual = std::max(held, q_.service.manual.value_or(0));
-        if (!(deviation(q_.samples.y) > 0) || (frozen >= kFrozenShare && held < kHeldShare)) {
+        const bool y_rests = !(deviation(q_.samples.y) > 0), u_rests = !(deviation(q_.samples.u) > 0);
+        if (y_rests && u_rests)
+            return open("Neither the measurement nor the output moves: the unit is out of service, or nothing was "
+                        "recorded.",
+                        {Verdict::frozen, Verdict::manual});
+        if (y_rests || (frozen >= kFrozenShare && held < kHeldShare)) {
             add("measurement-still", frozen, kFrozenShare,
                 "The measurement stands still for " + percent(frozen) + " of the time while the output moves.");
             return cause(Verdict::frozen, Confidence::sure);
         }
-        if (!(deviation(q_.samples.u) > 0) || manual >= kHeldShare) {
+        const bool at_limit = q_.service.saturated_low + q_.service.saturated_high >= kSaturatedShare;
+        if ((u_rests && !at_limit) || manual >= kHeldShare) {
             add("output-held", manual, kHeldShare,
                 "For " + percent(manual) + " of the time nobody controls: the loop is in manual, or its output rests.");
             return cause(Verdict::manual, Confidence::sure);
@@ -108,8 +114,10 @@ private:
         }
         if (peak_.regularity > kRegular)
             add("regularity", peak_.regularity, kRegular,
-                "Output and error oscillate with a period of " + time(peak_.period) + " and a regularity of " +
-                    figure_text(peak_.regularity) + "; above 1 is regular.");
+                std::string(same ? "Output and error oscillate" : by_output ? "The output oscillates"
+                                                                            : "The error oscillates") +
+                    " with a period of " + time(peak_.period) + " and a regularity of " +
+                    figure_text(peak_.regularity) + "; above " + figure_text(kRegular) + " is regular.");
     }
 
     std::optional<Cause> by_limits() {
@@ -127,11 +135,10 @@ private:
     }
 
     double limit_visits() const {
-        const double near = kAtLimit * (q_.u_range[1] - q_.u_range[0]);
         double visits = 0;
         bool before = false;
         for (const double u : q_.samples.u) {
-            const bool now = u <= q_.u_range[0] + near || u >= q_.u_range[1] - near;
+            const bool now = q_.u_range.at_limit(u);
             visits += now && !before ? 1 : 0;
             before = now;
         }
@@ -209,7 +216,6 @@ private:
         const bool in_range = fit->ratio >= kLeastBandRatio && fit->ratio <= kMostBandRatio;
         if (fit->gain >= kPerhapsBand && in_range && !linear_loop()) perhaps_band_ = fit->gain;
         const bool clear = fit->explained >= kDeadBandExplained && fit->gain >= kDeadBandGain && in_range &&
-                           fit->ratio >= kLeastBandRatio && fit->ratio <= kMostBandRatio &&
                            fit->explained_without < kDeadBandLinear;
         const bool in_part = fit->gain >= kPartGain && fit->explained_without < kPartLinear &&
                              fit->ratio >= kPartLeast && fit->ratio <= kPartMost && fit->turns >= kPartTurns &&
@@ -226,8 +232,8 @@ private:
         if (line_ >= kLine && peak_.persistence >= 0.6 && (peak_.cycles >= 8 || (peak_.cycles >= 6 && line_ >= 0.97))) {
             add("one-frequency", line_, kLine,
                 percent(line_) +
-                    " of the oscillation is one exact frequency over the whole record, which neither a "
-                    "valve nor a loop keeps.");
+                    " of the oscillation is one exact frequency over the whole record: that of a "
+                    "sticking valve or a tight loop would drift.");
             Cause out = cause(Verdict::external,
                               line_ >= kSureLine && peak_.cycles >= 8 ? Confidence::sure : Confidence::likely,
                               {Verdict::tight, Verdict::stiction});
@@ -247,8 +253,8 @@ private:
         if ((peak_.regularity >= kOscillates && peak_.share > kClearShare) ||
             (line_ >= 0.85 && peak_.persistence >= 0.6)) {
             Cause out = open("The loop oscillates, over " + figure_text(std::floor(peak_.cycles)) +
-                                 " cycles, but neither a valve, nor one exact frequency, nor a loop near its stability "
-                                 "limit is shown. A longer record, or some periods in manual, tell.",
+                                 " cycles, but the record does not show whether the valve, a disturbance or the tuning is "
+                                 "the cause. Record for longer, or put the loop in manual for some periods.",
                              {Verdict::stiction, Verdict::tight, Verdict::external});
             out.period = peak_.period * q_.samples.step;
             return out;
@@ -297,10 +303,11 @@ private:
             return std::nullopt;
         const double ratio = response->rise / response->dead_time;
         add("set-point-response", ratio, kSluggishRise,
-            "After " + std::to_string(response->moves) + " moves of the set point the measurement needs " +
+            "After " + counted(response->moves, "move") + " of the set point the measurement needs " +
                 q_.units.time_text(response->rise) + " to 63 %, " + figure_text(ratio) +
                 " times the time until it begins; a loop tuned for its dead time needs 1 to 2 times.");
-        if (ratio < kSluggishRise || smooths_flows()) return std::nullopt;
+        quick_after_moves_ = ratio < kSluggishRise || smooths_flows();
+        if (quick_after_moves_) return std::nullopt;
         return cause(Verdict::sluggish,
                      response->moves > 1 && ratio > 1.5 * kSluggishRise ? Confidence::sure : Confidence::likely);
     }
@@ -312,8 +319,7 @@ private:
                 "A dead band of the valve would explain the measurement better, but the valve turns too seldom to "
                 "prove it. A longer record tells.",
                 {Verdict::stiction, Verdict::healthy, Verdict::sluggish});
-        if (std::ranges::any_of(evidence_, [](const Evidence& e) { return e.code == "set-point-response"; }))
-            return cause(Verdict::healthy, Confidence::likely);
+        if (quick_after_moves_) return cause(Verdict::healthy, Confidence::likely);
         const double free = free_of_moves();
         const bool moves = !q_.samples.r.empty() && deviation(q_.samples.r) > 1.5 * deviation(error_);
         if (free < kFreeOfMoves && moves)
@@ -357,19 +363,22 @@ private:
 
     Cause by_speed() {
         const auto& found = speed();
-        if (found) {
+        if (found && found->pace > 0) {
             add("pace", found->pace, {},
                 "Crossover frequency times dead time is about " + figure_text(found->pace) +
-                    ": 0.5 is quick, below 0.19 the loop is slower than its dead time asks.");
+                    ": 0.5 is quick, below 0.19 the loop is slower than its dead time allows.");
             if (found->slow >= kSlow && tells_slow(*found) && !smooths_flows()) {
                 add("slow", found->slow, kSlow,
-                    "By the reaction to " + std::to_string(found->load_steps) +
-                        " steps of the load the loop is sluggish with a likelihood of " + percent(found->slow) + ".");
+                    "By the reaction to " + counted(found->load_steps, "step") +
+                        " of the load the loop is sluggish with a likelihood of " + percent(found->slow) + ".");
                 return cause(Verdict::sluggish, Confidence::likely, {Verdict::healthy});
             }
         }
         if (crossings() < kFewestCrossings) return few_crossings();
-        add("no-fault", 0, {}, "No oscillation, no limit and no fault of the valve is seen.");
+        add("no-fault", 0, {},
+            std::string(peak_.regularity > kRegular ? "The oscillation is too weak or too irregular to have a cause; no"
+                                                    : "No oscillation, no") +
+                " limit and no fault of the valve is seen.");
         const bool doubtful = !smooths_flows() && (!found || found->slow >= kPerhapsSlow);
         return cause(Verdict::healthy, Confidence::likely,
                      doubtful ? std::vector{Verdict::sluggish} : std::vector<Verdict>{});
@@ -386,7 +395,8 @@ private:
     std::optional<ValveBank> bank_;
     bool asked_speed_ = false;
     std::optional<LoopSpeed> speed_;
-    double perhaps_band_ = 0;  // gain of a dead band that is not proven
+    bool quick_after_moves_ = false;  // of the set point
+    double perhaps_band_ = 0;         // gain of a dead band that is not proven
     std::vector<Evidence> evidence_;
 };
 

@@ -1,11 +1,11 @@
 // Why a loop is as it is.
 #pragma once
 
-#include <array>
 #include <stop_token>
 
 #include "engine/check/loop_check.h"
 #include "engine/check/oscillation.h"
+#include "engine/check/output_range.h"
 #include "engine/check/samples.h"
 #include "engine/check/service.h"
 
@@ -16,7 +16,7 @@ struct CauseQuestion {
     const LoopQuestion& loop;
     const Samples& samples;
     const OscillationStudy& oscillation;
-    std::array<double, 2> u_range{};
+    const OutputRange& u_range;
     const RecordQuality& quality;
     const ServiceShares& service;
     const LoopLaw& law;

@@ -29,13 +29,16 @@ Trend trend_of(const Samples& samples) {
     const std::size_t n = samples.size(), stretches = std::min<std::size_t>(kTrendStretches, n);
     for (std::size_t k = 0; k < stretches; ++k) {
         const std::size_t from = k * n / stretches, to = (k + 1) * n / stretches;
-        std::size_t low = from, high = from;
-        for (std::size_t i = from; i < to; ++i) {
-            if (samples.y[i] < samples.y[low]) low = i;
-            if (samples.y[i] > samples.y[high]) high = i;
+        std::vector<std::size_t> extremes;
+        for (const auto* values : {&samples.y, &samples.u}) {
+            const auto [low, high] = std::minmax_element(values->begin() + std::ptrdiff_t(from),
+                                                         values->begin() + std::ptrdiff_t(to));
+            extremes.push_back(std::size_t(low - values->begin()));
+            extremes.push_back(std::size_t(high - values->begin()));
         }
-        append(trend, samples, std::min(low, high));
-        if (low != high) append(trend, samples, std::max(low, high));
+        std::ranges::sort(extremes);
+        extremes.erase(std::unique(extremes.begin(), extremes.end()), extremes.end());
+        for (const std::size_t i : extremes) append(trend, samples, i);
     }
     return trend;
 }

@@ -7,7 +7,7 @@
 
 namespace tunewright::check {
 
-/// The extremes of even stretches of the whole record.
+/// The extremes of measurement and output in even stretches of the whole record.
 Trend trend_of(const Samples& samples);
 
 /// Sets excerpt, spectrum and autocorrelation.

@@ -42,21 +42,21 @@ std::string with_unit(double value, const std::string& unit) {
 }
 
 /// An output without a unit is stated against its range.
-UnitNames units_of(const LoopQuestion& question, const std::array<double, 2>& u_range) {
+UnitNames units_of(const LoopQuestion& question, const OutputRange& u_range) {
     UnitNames units = question.units;
-    if (units.u.empty()) units.u = "of the output's " + text(u_range[0]) + " to " + text(u_range[1]);
+    if (units.u.empty()) units.u = "of the output's " + text(u_range.low) + " to " + text(u_range.high);
     return units;
 }
 
 /// The period that the cause knows is the more exact one; a cycle that is too irregular for the spectrum is one
 /// nevertheless.
-void take_period(LoopCheck& check) {
+void take_period(const OscillationStudy& study, double step, LoopCheck& check) {
     if (!check.cause.period) return;
     auto& periods = check.oscillation.periods;
     constexpr double kSame = 0.25;  // in ln
     const auto same = std::ranges::find_if(
         periods, [&](const Period& period) { return std::abs(std::log(period.period / *check.cause.period)) < kSame; });
-    Period first = same != periods.end() ? *same : Period{};
+    Period first = same != periods.end() ? *same : oscillation_of(study, *check.cause.period, step);
     if (same != periods.end()) periods.erase(same);
     first.period = *check.cause.period;
     periods.insert(periods.begin(), first);
@@ -88,6 +88,7 @@ Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_tok
         check.performance = performance_of(samples, u_range, question);
         check.trend = trend_of(samples);
     }
+    if (stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The check was stopped."};
     if (check.quality.enough) {
         const OscillationStudy study = study_oscillation(samples);
         check.oscillation = study.found;
@@ -95,7 +96,7 @@ Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_tok
         check.cause =
             cause_of({question, samples, study, u_range, check.quality, check.service, check.law, check.units}, stop);
         if (stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The check was stopped."};
-        take_period(check);
+        take_period(study, samples.step, check);
         draw_details(samples, study, check);
         check.shape = shape_of(samples, check.oscillation, study, question);
     } else {

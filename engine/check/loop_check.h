@@ -94,7 +94,7 @@ struct Period {
     double period_error = 0;  ///< standard error, time
     double regularity = 0;    ///< above 1: regular (Thornhill, Huang, Zhang 2003)
     double share = 0;         ///< of the error's variance, 0 to 1
-    double amplitude = 0;     ///< half of peak to peak, y
+    double amplitude = 0;     ///< sqrt(2) standard deviations of its band, y
 };
 
 /// Strongest first.
@@ -114,7 +114,7 @@ struct Evidence {
 struct Cause {
     Verdict verdict = Verdict::undetermined;
     Confidence confidence = Confidence::open;
-    std::vector<Evidence> evidence = {};     ///< the strongest first
+    std::vector<Evidence> evidence = {};     ///< in the order in which it was found
     std::vector<Verdict> alternatives = {};  ///< the likeliest first
     Figure size = {};                        ///< width of the dead band and stick, or of the backlash; u
     Figure jump = {};                        ///< of the valve when it breaks loose, u
@@ -136,8 +136,9 @@ struct PerformanceFigures {
     Figure variability_share;  ///< the same over the range of the measurement
     double mean_error = 0;     ///< mean magnitude of the error, y
     double independent = 0;    ///< values of the error that count as independent
-    Figure following;          ///< variance of the error after set-point moves relative to that of the moves
-    double travel = 0;         ///< of the output, share of its range per hour
+    Figure following;          ///< variance of the error over that of the set point, where the set point moves
+    double offset = 0;         ///< mean of the error, y
+    Figure travel;             ///< of the output, share of its range per hour
     double reversals = 0;      ///< of the output, per hour
 };
 
@@ -162,7 +163,7 @@ struct Action {
 
 /// What the judgement of many loops needs of one: small enough to be kept for thousands.
 struct Shape {
-    double from = 0, to = 0;  ///< s, since 1970 if the record has a date, else since its first row
+    double from = 0, to = 0;  ///< s, since 1970 if the record has a date, else since t = 0
     bool dated = false;
     double period = 0;                     ///< of the strongest regular oscillation, s; 0: none
     std::vector<float> spectrum;           ///< share of the error's power in each of kShapeBands bands of period
@@ -197,12 +198,12 @@ struct LoopCheck {
     UnitNames units;  ///< of the sentences
     LoopLaw law;
     Shape shape;
-    Trend trend;            ///< the whole record, 2 kTrendStretches points at most
+    Trend trend;            ///< the whole record, 4 kTrendStretches points at most
     Trend excerpt;          ///< its last periods, row by row
     Curve spectrum;         ///< share of power over period, time
     Curve autocorrelation;  ///< of the error over lag, time
 };
-inline constexpr int kTrendStretches = 120;
+inline constexpr int kTrendStretches = 100;
 
 /// Errors: invalid_argument for columns of unequal lengths or a range that is not one; cancelled. A record that is too
 /// poor for a diagnosis is no error.

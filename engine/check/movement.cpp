@@ -46,8 +46,8 @@ OrReason<HarrisRange> harris_range(const Samples& samples, const LoopQuestion& q
     return HarrisRange{index.low, index.high, {samples.step * delays.front(), samples.step * delays.back()}};
 }
 
-/// Moves beyond the output's grid and noise, and their turns.
-void add_output(PerformanceFigures& out, const Samples& samples, double hours, const std::array<double, 2>& u_range) {
+/// All moves of the output, and their turns.
+void add_output(PerformanceFigures& out, const Samples& samples, double hours, const OutputRange& u_range) {
     double travel = 0, direction = 0;
     int turns = 0;
     for (std::size_t i = 1; i < samples.u.size(); ++i) {
@@ -57,8 +57,10 @@ void add_output(PerformanceFigures& out, const Samples& samples, double hours, c
         if (move * direction < 0) ++turns;
         direction = move;
     }
+    out.travel = no_figure(hours > 0 ? "The range of the output is not known: give it as range.op."
+                                     : "The record has no duration.");
     if (!(hours > 0)) return;
-    out.travel = travel / (u_range[1] - u_range[0]) / hours;
+    if (u_range.known) out.travel = travel / u_range.width() / hours;
     out.reversals = turns / hours;
 }
 
@@ -93,7 +95,7 @@ Figure following(const Samples& samples, const std::vector<double>& error) {
 
 }  // namespace
 
-PerformanceFigures performance_of(const Samples& samples, const std::array<double, 2>& u_range,
+PerformanceFigures performance_of(const Samples& samples, const OutputRange& u_range,
                                   const LoopQuestion& question) {
     PerformanceFigures out;
     const auto error = samples.error();
@@ -104,7 +106,11 @@ PerformanceFigures performance_of(const Samples& samples, const std::array<doubl
     double sum = 0;
     for (const double e : error) sum += std::abs(e);
     out.mean_error = sum / static_cast<double>(error.size());
-    out.independent = effective_samples(error);
+    const double offset = mean(error);
+    std::vector<double> centred(error);
+    for (double& e : centred) e -= offset;
+    out.offset = offset;
+    out.independent = effective_samples(centred);
     add_output(out, samples, samples.duration() * question.seconds / kHour, u_range);
     out.harris = harris_range(samples, question);
     out.idle_index = idle_index(samples);

@@ -10,7 +10,22 @@ namespace {
 
 constexpr std::size_t kMostPeriods = 3;
 
+/// In the time of the record, as a share of the error's whole variance.
+Period in_time(Period period, const PeakSearch& search, double step) {
+    period.period *= step;
+    period.period_error *= step;
+    period.share *= search.share_looked_at();
+    return period;
+}
+
 }  // namespace
+
+Period oscillation_of(const OscillationStudy& study, double period, double step) {
+    const PeakSearch search(study.error);
+    Period out = in_time(search.oscillation_about(step / period), search, step);
+    out.period = period;
+    return out;
+}
 
 OscillationStudy study_oscillation(const Samples& samples) {
     OscillationStudy study;
@@ -25,10 +40,8 @@ OscillationStudy study_oscillation(const Samples& samples) {
     while (study.found.periods.size() < kMostPeriods) {
         const double f = search.frequency_of_strongest();
         if (!(f > 0)) break;
-        Period period = search.oscillation_about(f);
-        period.period *= step;
-        period.period_error *= step;
-        if (period.share < kLeastShare) break;
+        const Period found = search.oscillation_about(f), period = in_time(found, search, step);
+        if (found.share < kLeastShare) break;
         if (period.regularity > kRegular)
             study.found.periods.push_back(period);
         else if (study.found.periods.empty())

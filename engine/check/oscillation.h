@@ -21,4 +21,7 @@ struct OscillationStudy {
 
 OscillationStudy study_oscillation(const Samples& samples);
 
+/// The oscillation with a period that is known from elsewhere; times of the record.
+Period oscillation_of(const OscillationStudy& study, double period, double step);
+
 }  // namespace tunewright::check

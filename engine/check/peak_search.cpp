@@ -129,7 +129,7 @@ PeakSearch::PeakSearch(std::span<const double> series)
     const double centre = mean(series);
     for (double& value : series_) value -= centre;
     const std::size_t n = series_.size();
-    std::vector<double> windowed(quick_length(2 * n), 0.0);
+    std::vector<double> windowed(2 * quick_length(n), 0.0);
     for (std::size_t i = 0; i < n; ++i) windowed[i] = window_[i] * series_[i];
     const Spectrum of_windowed = half_spectrum(windowed);
     power_.resize(of_windowed.size());
@@ -139,8 +139,10 @@ PeakSearch::PeakSearch(std::span<const double> series)
     padded.resize(length_, 0.0);
     X_ = half_spectrum(padded);
     slowest_ = kFewestCycles / static_cast<double>(n);
-    for (std::size_t k = 0; k < X_.size(); ++k)
+    for (std::size_t k = 0; k < X_.size(); ++k) {
+        all_ += std::norm(X_[k]);
         if (frequency(k) >= slowest_) total_ += std::norm(X_[k]);
+    }
 }
 
 double PeakSearch::frequency_of_strongest(double tilt) const {

@@ -38,6 +38,9 @@ public:
     /// Takes the band about a frequency out of the spectrum.
     void remove(double f);
 
+    /// Of the series' whole variance, the share that is looked at: without what is slower than the slowest oscillation.
+    double share_looked_at() const { return all_ > 0 ? total_ / all_ : 0; }
+
     /// The share of power in even steps of ln(period); periods in rows.
     Curve power_over_period() const;
 
@@ -52,7 +55,7 @@ private:
     std::vector<double> power_;            ///< of the windowed series, at twice as many frequencies as it has of its own
     std::vector<std::complex<double>> X_;  ///< of the series, padded to length_
     std::size_t length_ = 0;
-    double slowest_ = 0, total_ = 0;  ///< lowest frequency that is looked for; power from there on
+    double slowest_ = 0, total_ = 0, all_ = 0;  ///< lowest frequency that is looked for; power from there on; all power
 };
 
 }  // namespace tunewright::check

@@ -173,7 +173,8 @@ const Description<PerformanceFigures>& loop_performance_contract() {
             .field("independent", &P::independent, answered(), "Values of the error that count as independent.")
             .field("following", &P::following, figure(),
                    "Variance of the error over that of the set point, where the set point moves.")
-            .field("travel", &P::travel, answered(), "Of the output, ranges an hour.")
+            .field("offset", &P::offset, answered(), "Mean of the error.", {.unit = "y"})
+            .field("travel", &P::travel, figure(), "Of the output, ranges an hour.")
             .field("reversals", &P::reversals, answered(), "Of the output, an hour.")
             .why_null(kNotKnown);
         return d;

@@ -27,7 +27,7 @@ std::string settings_text(const LoopLaw& law, const UnitNames& units) {
 
 }  // namespace
 
-ChosenLaw chosen_law(const LoopQuestion& question, const Samples& samples, const std::array<double, 2>& u_range,
+ChosenLaw chosen_law(const LoopQuestion& question, const Samples& samples, const OutputRange& u_range,
                      const UnitNames& units) {
     const LoopLaw fitted = loop_law(samples.error(), samples.u, samples.step);
     if (!question.controller || question.controller->Kp == 0) return {fitted, {}};

@@ -1,10 +1,9 @@
 // Today's settings as given, or as the record shows them.
 #pragma once
 
-#include <array>
 #include <optional>
 
-#include "engine/check/loop_check.h"
+#include "engine/check/output_range.h"
 #include "engine/check/samples.h"
 
 namespace tunewright::check {
@@ -17,7 +16,7 @@ struct ChosenLaw {
 /// Gain and Ti of the given controller; those of loop_law() if none is given, if it has no gain, or if the record
 /// clearly shows another gain or Ti. Not compared: a given controller with derivative action, which the fit has not,
 /// and a record with the output at a limit, where no law holds.
-ChosenLaw chosen_law(const LoopQuestion& question, const Samples& samples, const std::array<double, 2>& u_range,
+ChosenLaw chosen_law(const LoopQuestion& question, const Samples& samples, const OutputRange& u_range,
                      const UnitNames& units);
 
 }  // namespace tunewright::check

@@ -35,7 +35,8 @@ LoopLaw loop_law(std::span<const double> error, std::span<const double> output, 
         }
         const double count = double(n - M), variance = squares - total * total / count;
         if (!(variance > 0)) continue;
-        const Eigen::Vector3d scale = A.diagonal().cwiseSqrt().array() + 1e-300;
+        if (!(A.diagonal().minCoeff() > 0)) continue;  // a constant error shows no law
+        const Eigen::Vector3d scale = A.diagonal().cwiseSqrt();
         const Eigen::Matrix3d scaled =
             (A.array() / (scale * scale.transpose()).array()).matrix() + 1e-10 * Eigen::Matrix3d::Identity();
         const Eigen::Matrix3d inverse = scaled.inverse();

@@ -15,9 +15,17 @@ namespace {
 constexpr double kSluggishGain = 0.5;  // of the mean error: what tuning a sluggish loop is known to save, about
 constexpr double kValveGain = 0.8;     // of the oscillation's share, which ends with its cause
 
+/// The oscillation's share of the error's mean square, a lasting offset included.
+double oscillating_share(const LoopCheck& check) {
+    if (!check.oscillation.found) return 0;
+    const double variance = check.performance.variability * check.performance.variability;
+    const double square = variance + check.performance.offset * check.performance.offset;
+    return square > 0 ? check.oscillation.periods.front().share * variance / square : 0;
+}
+
 /// The share of the error that mending may remove.
 Figure share_of(const LoopCheck& check) {
-    const double oscillating = check.oscillation.found ? check.oscillation.periods.front().share : 0;
+    const double oscillating = oscillating_share(check);
     switch (check.cause.verdict) {
         case Verdict::healthy: return 0.0;
         case Verdict::stiction:

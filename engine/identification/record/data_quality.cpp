@@ -13,11 +13,6 @@
 namespace tunewright {
 namespace {
 
-/// "1 row", "3 rows".
-std::string counted(int count, const std::string& one) {
-    return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
-}
-
 void describe_sampling(const CleanRecord& r, DataQuality& quality) {
     std::vector<double> spacings = tunewright::spacings(r);
     constexpr double kMaxOddShare = 0.01;  // of the spacings: an occasional missed row of a logger

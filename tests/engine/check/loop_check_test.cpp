@@ -195,7 +195,7 @@ TEST(LoopCheck, TravelAndReversalsAreThoseOfTheirDefinition) {
         record.u.push_back(50 + 10 * ((i / 100) % 2));  // 35 moves of 10 %
     }
     const LoopCheck check = checked(record);
-    EXPECT_NEAR(check.performance.travel, 35 * 0.1, 0.01);
+    EXPECT_NEAR(check.performance.travel.value_or(0), 35 * 0.1, 0.01);
     EXPECT_NEAR(check.performance.reversals, 34, 0.1);
 }
 

@@ -142,6 +142,7 @@ Html action_of(const ReportInput& s, const JsonLocation& loop, const JsonLocatio
          {std::pair{"worst_Ms", "Largest Ms on the plants that fit the record: "},
           {"error_ratio", "Mean error in the recorded time, with the new settings over that of the record: "}})
         if (cure.at(member).value().is_number()) settings.push_back(Html(name) + figure(cure.at(member)));
+    for (Html& item : sentences_at(cure.at("valve").at("stops"), "detail")) settings.push_back(std::move(item));
     if (const std::string test = text_at(cure.at("test").at("detail")); !test.empty()) settings.emplace_back(test);
     return section("What to do first", out + list(settings));
 }

@@ -384,6 +384,7 @@ std::string reasons_of(const Json& answer, const std::vector<std::size_t>& order
         out += "\n" + words(member_of(loop, "tag")) + "\n" + sentences(evidence, "detail");
         for (const char* part : {"/cause/why_open", "/action/detail", "/cure/detail"})
             if (const std::string sentence = words(at(loop, part)); !sentence.empty()) out += "  " + sentence + "\n";
+        out += sentences(at(loop, "/cure/valve/stops"), "detail");
     }
     if (more > 0)
         out += "\n" + std::to_string(more) + (more == 1 ? " more loop needs" : " more loops need") +

@@ -11,7 +11,7 @@ namespace {
 std::string valve_work(const LoopCheck& check, const char* what) {
     std::string out = std::string("Have the valve and its positioner looked at: ") + what;
     if (check.cause.size) out += " of about " + check.units.u_text(*check.cause.size);
-    return out + ". Do not tune before: settings only change the period of the cycle.";
+    return out + ". Do not tune instead: new settings mostly just change the period of the cycle.";
 }
 
 bool has_remark(const LoopCheck& check, std::string_view code) {
@@ -60,8 +60,9 @@ Action action_for(const LoopCheck& check, const std::string& source) {
                 return {check_range, Owner::instruments,
                         "Look at the range of the transmitter: at its end the measurement does not move, and the loop "
                         "does not see what it controls."};
-            return {record_again, Owner::control,
-                    check.quality.rows == 0 ? "Check this loop again." : "Record again, for longer or with raw values."};
+            return {
+                record_again, Owner::control,
+                check.quality.rows == 0 ? "Check this loop again." : "Record again, for longer or with raw values."};
     }
     return {};
 }

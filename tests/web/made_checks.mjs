@@ -79,6 +79,7 @@ export function madeLoop(tag, verdict, { period = 100, confidence = "sure", auto
       harris: { low: 0.1, high: 0.45, delays: [10, 90] },
       idle_index: -0.25,
       variability: 1.4,
+      variability_share: 0.014,
       mean_error: 1.25,
       following: null,
       travel: 2.5,

@@ -73,8 +73,8 @@ const Description<GivenLoop>& loop_contract() {
                                             {"level", level},
                                             {"temperature", temperature},
                                             {"composition", composition}}),
-                   "What it measures. The Harris range of a level is judged only with averaging false; the other kinds "
-                   "are shown and filtered by, and change no conclusion.")
+                   "What it measures. The Harris range of a level is judged only with averaging false, and its plant "
+                   "may integrate (cure.valve); the other kinds are shown and filtered by, and change no conclusion.")
             .field("averaging", &L::averaging, maybe(boolean()),
                    "true: a level that is there to smooth flows. Its variance and its slowness are its purpose and are "
                    "not judged. false: a level that must be held.")
@@ -116,8 +116,8 @@ const Description<CheckRequest>& check_request_contract() {
                 "The loops; many large ones are sent as a batch.", {.required = true})
             .field("cluster", &R::cluster, boolean(), "Look for loops that oscillate together, and for the source.")
             .field("settings", &R::settings, boolean(),
-                   "Where tuning is the cause: look for new settings too, or say which test is missing. Some seconds a "
-                   "loop.");
+                   "Where tuning is the cause: look for new settings too, or say which test is missing. Where a valve "
+                   "sticks: look for settings that stop its cycle until it is repaired. Some seconds a loop.");
         add_terms(d);
         d.refuse("record", "A check takes a record for each loop: loops [{\"tag\": \"FIC101\", \"record\": {...}}].")
             .refuse("tune", "A check designs nothing; its answer says for which loops tuning helps.")

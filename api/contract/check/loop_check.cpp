@@ -222,6 +222,67 @@ const Description<TestPlan>& test_plan_contract() {
     return description;
 }
 
+const Description<CycleStop>& cycle_stop_contract() {
+    static const auto description = [] {
+        using S = CycleStop;
+        using enum StopMeans;
+        Description<S> d("CycleStop", "PI settings with which the cycle of a sticking valve ends.");
+        d.field("means", &S::means,
+                only_answered(
+                    choice<StopMeans>({{"integral-time", integral_time}, {"gap", gap}, {"no-integral", no_integral}})),
+                "A longer integral time; a gap on the error; no integral action. Each may need a lower gain too.")
+            .field("Kp", &S::Kp, answered(), "Gain.", {.unit = "u/y"})
+            .field("Ti", &S::Ti, only_answered(maybe(number())), "Integral time; left out without integral action.",
+                   {.unit = "time"})
+            .field("gap", &S::gap, answered(), "The integral rests while the magnitude of the error is at most this.",
+                   {.unit = "y"})
+            .field(
+                "error_ratio", {},
+                [](const S& stop, Writer& out) {
+                    out.begin_array();
+                    for (const double end : stop.error_ratio) out.number(end);
+                    out.end_array();
+                },
+                numbers(2, 2).schema,
+                "Mean magnitude of the error over five periods of the cycle after a step of the load as large as the "
+                "valve's band, over that of today's settings, both with a good valve: lowest and highest over the "
+                "plants that make the recorded cycle.")
+            .field("standing_error", &S::standing_error, answered(),
+                   "Largest error that remains with the sticking valve after loads up to its band.", {.unit = "y"})
+            .field("detail", &S::detail, words(), "A sentence.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<CycleStops>& cycle_stops_contract() {
+    static const auto description = [] {
+        using S = CycleStops;
+        using enum S::Outcome;
+        Description<S> d("CycleStops",
+                         "Settings that stop the cycle of a sticking valve until it is repaired, by simulation.");
+        d.field(
+             "outcome", &S::outcome,
+             only_answered(choice<S::Outcome>({{"found", found}, {"none", none}, {"not-told", not_told}})),
+             "found; none of the search stops the cycle surely; or it cannot be told, because the simulated loop does "
+             "not make the recorded cycle or something is not known (detail).")
+            .field("stops", &S::stops, answered_list(cycle_stop_contract()), "At most one for each means.")
+            .field(
+                "plant", {}, [](const S& stops, Writer& out) { plant_contract().write(Plant(*stops.plant), out); },
+                one_of(plant_contract()).schema, "The plant behind the valve.", {},
+                [](const S& stops) { return !stops.plant; })
+            .field("period", &S::period, figure(), "Period of the simulated cycle.", {.unit = "time"})
+            .field("amplitude", &S::amplitude, figure(),
+                   "Of the measurement in the simulated cycle: sqrt 2 times its standard deviation.", {.unit = "y"})
+            .field("recorded_amplitude", &S::recorded_amplitude, answered(), "The same of the record; 0: not told.",
+                   {.unit = "y"})
+            .field("detail", &S::detail, words(), "A sentence.")
+            .why_null("It cannot be told.");
+        return d;
+    }();
+    return description;
+}
+
 const Description<LoopCure>& cure_contract() {
     static const auto description = [] {
         using C = LoopCure;
@@ -241,6 +302,8 @@ const Description<LoopCure>& cure_contract() {
                    "Mean magnitude of the error in the recorded time, with the new settings over that of the record.")
             .field("test", &C::test, only_answered(maybe(answer(test_plan_contract()))),
                    "The test to make; without settings.")
+            .field("valve", &C::valve, only_answered(maybe(answer(cycle_stops_contract()))),
+                   "With a sticking valve: settings until it is repaired.")
             .field("detail", &C::detail, words(), "A sentence.")
             .why_null("There are no settings.");
         return d;
@@ -350,7 +413,8 @@ void add_findings(Description<CheckedLoop>& d) {
         .field("performance", &L::performance, answer(loop_performance_contract()), "How much error and output move.")
         .field("action", &L::action, answer(action_contract()), "What to do first.")
         .field("cure", &L::cure, only_answered(maybe(answer(cure_contract()))),
-               "New settings, or the test that is missing, where tuning is the cause and settings were asked for.")
+               "New settings, or the test that is missing, where tuning is the cause; settings until the repair of a "
+               "sticking valve. Only if settings were asked for.")
         .field("weight", &L::weight, only_answered(maybe(number())), "As in the request.")
         .field("trend", &L::trend, answer(trend_contract()), "The whole record, as extremes of even stretches.");
 }

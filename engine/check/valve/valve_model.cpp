@@ -10,64 +10,54 @@ constexpr int kBands = 18;
 constexpr double kLeastBand = 0.05, kMostBand = 1.05;         // of the span
 constexpr std::array<double, 4> kJumps = {0, 0.33, 0.67, 1};  // of the band
 
-std::vector<double> he_position(std::span<const double> output, double band, double jump) {
-    const double break_loose = 0.5 * (band + jump), kinetic = 0.5 * (band - jump);
-    std::vector<double> position;
-    position.reserve(output.size());
-    double v = output.empty() ? 0 : output[0], before = v, stored = 0;
-    for (const double u : output) {
-        if (u != before) {
-            const double force = stored + (u - before);
-            if (std::abs(force) > break_loose) {
-                stored = std::copysign(kinetic, force);
-                v += force - stored;
-            } else {
-                stored = force;
-            }
-            before = u;
-        }
-        position.push_back(v);
-    }
-    return position;
-}
-
 int sign(double x) { return (x > 0) - (x < 0); }
-
-std::vector<double> kano_position(std::span<const double> output, double band, double jump) {
-    const double friction = 0.5 * (band - jump);
-    std::vector<double> position;
-    position.reserve(output.size());
-    double v = output.empty() ? 0 : output[0], before = v, stopped_at = v;
-    int direction = 1, last = 0;
-    bool stopped = true;
-    for (const double u : output) {
-        const int now = sign(u - before);
-        if (now != last && !stopped) {
-            stopped = true;
-            stopped_at = before;
-        }
-        if (stopped) {
-            const double ahead = direction * (u - stopped_at);
-            if (-ahead > band) {
-                direction = -direction;
-                stopped = false;
-            } else if (ahead > jump) {
-                stopped = false;
-            }
-        }
-        if (!stopped) v = u - direction * friction;
-        last = now;
-        before = u;
-        position.push_back(v);
-    }
-    return position;
-}
 
 }  // namespace
 
+double Valve::move(double u) {
+    if (model_.kind == ValveModel::Kind::he)
+        move_he(u);
+    else
+        move_kano(u);
+    before_ = u;
+    return position_;
+}
+
+void Valve::move_he(double u) {
+    if (u == before_) return;
+    const double force = stored_ + (u - before_);
+    stored_ = force;
+    if (std::abs(force) <= 0.5 * (model_.band + model_.jump)) return;
+    stored_ = std::copysign(0.5 * (model_.band - model_.jump), force);
+    position_ += force - stored_;
+}
+
+void Valve::move_kano(double u) {
+    const int now = sign(u - before_);
+    if (now != last_ && !stopped_) {
+        stopped_ = true;
+        stopped_at_ = before_;
+    }
+    if (stopped_) {
+        const double ahead = direction_ * (u - stopped_at_);
+        if (-ahead > model_.band) {
+            direction_ = -direction_;
+            stopped_ = false;
+        } else if (ahead > model_.jump) {
+            stopped_ = false;
+        }
+    }
+    if (!stopped_) position_ = u - direction_ * 0.5 * (model_.band - model_.jump);
+    last_ = now;
+}
+
 std::vector<double> valve_position(std::span<const double> output, const ValveModel& valve) {
-    return valve.kind == ValveModel::Kind::he ? he_position(output, valve.band, valve.jump)
-                                              : kano_position(output, valve.band, valve.jump);
+    std::vector<double> position;
+    position.reserve(output.size());
+    if (output.empty()) return position;
+    Valve moved(valve, output[0]);
+    for (const double u : output) position.push_back(moved.move(u));
+    return position;
 }
 
 std::vector<ValveModel> valve_candidates(double span) {

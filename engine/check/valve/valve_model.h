@@ -17,6 +17,26 @@ struct ValveModel {
     double band = 0, jump = 0;
 };
 
+/// A valve that is moved row by row; at first its position is the output `at`.
+class Valve {
+public:
+    Valve(const ValveModel& model, double at) : model_(model), position_(at), before_(at), stopped_at_(at) {}
+
+    /// The position with the output u.
+    double move(double u);
+
+private:
+    void move_he(double u);
+    void move_kano(double u);
+
+    ValveModel model_;
+    double position_, before_;
+    double stored_ = 0;  ///< He: the force that friction holds
+    double stopped_at_;  ///< Kano: and its direction, the sign of the last move, whether it rests
+    int direction_ = 1, last_ = 0;
+    bool stopped_ = true;
+};
+
 /// The position in each row; at first it is the output's.
 std::vector<double> valve_position(std::span<const double> output, const ValveModel& valve);
 

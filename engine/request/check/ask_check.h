@@ -14,11 +14,11 @@ namespace tunewright {
 struct CheckQuestion {
     std::vector<check::LoopQuestion> loops;
     bool cluster = true;    ///< look for loops that oscillate together
-    bool settings = false;  ///< look for new settings where tuning is the cause: up to some seconds a loop
+    bool settings = false;  ///< look for new settings where tuning or a valve is the cause: some seconds a loop
 };
 
 struct CheckedLoop : check::LoopCheck {
-    std::optional<LoopCure> cure;  ///< where tuning is the cause, if settings are asked for
+    std::optional<LoopCure> cure;  ///< where tuning or a valve is the cause, if settings are asked for
 };
 
 struct CheckResult {

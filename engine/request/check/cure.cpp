@@ -55,10 +55,21 @@ LoopCure with_settings(const TuningResult& result, const TuningEntry& entry, std
     return cure;
 }
 
+LoopCure until_repair(const check::LoopQuestion& question, const check::LoopCheck& check, const RunControl& control) {
+    LoopCure cure;
+    cure.valve = check::cycle_stops(question, check, control.stop);
+    if (cure.valve->outcome != check::CycleStops::Outcome::not_told)
+        cure.today = IdealPid{.Kp = check.law.gain, .Ti = check.law.Ti};
+    cure.detail = cure.valve->detail;
+    cure.worst_Ms = cure.error_ratio = no_figure("Repair the valve first.");
+    return cure;
+}
+
 }  // namespace
 
 std::optional<LoopCure> cure_of(const check::LoopQuestion& question, const check::LoopCheck& check,
                                 const RunControl& control) {
+    if (check.action.code == check::ActionCode::repair_valve) return until_repair(question, check, control);
     if (check.action.code != check::ActionCode::retune && check.action.code != check::ActionCode::test)
         return std::nullopt;
     TuningRequest request;

@@ -39,6 +39,7 @@ constexpr const char* kLoops = R"([
       "alternatives": ["backlash"], "size": 3.068, "jump": 0.5, "period": 54.04},
    "performance": {"mean_error": 0.39, "harris": {"low": 0.01, "high": 0.34, "delays": [1, 14]}, "idle_index": -0.9},
    "action": {"code": "repair-valve", "owner": "instruments", "detail": "Have the valve looked at."},
+   "cure": {"detail": "Until the repair:", "valve": {"stops": [{"detail": "With a gap the cycle ends."}]}},
    "trend": {"t": [0, 1, 2], "y": [1, 2, 1], "r": [1, 1, 1], "u": [3, 4, 3]},
    "excerpt": {"t": [0, 1, 2], "y": [1, 2, 1], "u": [3, 4, 3]}, "spectrum": {"x": [1, 10, 100], "y": [0, 0.9, 0.1]}}])";
 
@@ -66,6 +67,11 @@ std::size_t occurrences(std::string_view text, std::string_view part) {
     for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + part.size()))
         ++found;
     return found;
+}
+
+TEST(CheckReport, SaysWhatEndsTheCycleOfAValveUntilItsRepair) {
+    EXPECT_EQ(occurrences(report_of(result()), "With a gap the cycle ends."), 1u);
+    EXPECT_EQ(occurrences(check_text(result()), "  With a gap the cycle ends.\n"), 1u);
 }
 
 TEST(CheckReport, HasAPageForThePlantAndOneForEachLoop) {

@@ -1148,9 +1148,13 @@ export type components = {
       noise: number;
       y_step: number;
       u_step: number;
+      at_limit: number | null;
       compressed: boolean;
       enough: boolean;
       remarks: components["schemas"]["Warning"][];
+      why_null?: {
+        [key: string]: string;
+      };
     };
     LoopService: {
       automatic: number | null;
@@ -1199,6 +1203,7 @@ export type components = {
       harris: components["schemas"]["HarrisRange"] | null;
       idle_index: number | null;
       variability: number;
+      variability_share: number | null;
       mean_error: number;
       independent: number;
       following: number | null;
@@ -1228,6 +1233,7 @@ export type components = {
       worst_Ms: number | null;
       error_ratio: number | null;
       test?: components["schemas"]["CheckTest"];
+      valve?: components["schemas"]["CycleStops"];
       detail: string;
       why_null?: {
         [key: string]: string;
@@ -1240,6 +1246,30 @@ export type components = {
       hold: number;
       duration: number;
       beyond_seen: boolean;
+      detail: string;
+    };
+    CycleStops: {
+      outcome: "found" | "none" | "not-told";
+      stops: components["schemas"]["CycleStop"][];
+      plant?: components["schemas"]["Plant"];
+      period: number | null;
+      amplitude: number | null;
+      recorded_amplitude: number;
+      detail: string;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    CycleStop: {
+      means: "integral-time" | "gap" | "no-integral";
+      Kp: number;
+      Ti?: number;
+      gap: number;
+      error_ratio: [
+        number,
+        number
+      ];
+      standing_error: number;
       detail: string;
     };
     LoopTrend: {
@@ -1887,6 +1917,8 @@ export type HarrisRange = components['schemas']['HarrisRange'];
 export type CheckAction = components['schemas']['CheckAction'];
 export type LoopCure = components['schemas']['LoopCure'];
 export type CheckTest = components['schemas']['CheckTest'];
+export type CycleStops = components['schemas']['CycleStops'];
+export type CycleStop = components['schemas']['CycleStop'];
 export type LoopTrend = components['schemas']['LoopTrend'];
 export type CheckCurve = components['schemas']['CheckCurve'];
 export type LoopShape = components['schemas']['LoopShape'];

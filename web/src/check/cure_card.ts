@@ -1,5 +1,5 @@
-// New settings for a loop whose cause is its tuning, next to today's; or the test that would show them. Asked for when
-// the loop's page is opened: it takes up to some seconds.
+// New settings for a loop whose cause is its tuning, next to today's; or the test that would show them; or what ends the
+// cycle of a sticking valve until it is repaired. Asked for when the loop's page is opened: it takes up to some seconds.
 import { sentenceOf } from "../api/client.ts";
 import { cureOf } from "../api/check.ts";
 import type { CheckLoop, LoopCheck, LoopCure, Units } from "../api/types.ts";
@@ -13,12 +13,13 @@ import type { UnitNames } from "../words/numbers.ts";
 
 export interface CureCard {
   element: HTMLElement;
-  /** `sent`: the loop with its record; null if it is not known. Hidden unless tuning is what the loop needs. */
+  /** `sent`: the loop with its record; null if it is not known. Hidden unless the loop needs tuning or the repair of a valve. */
   show(loop: LoopCheck, sent: CheckLoop | null, units: Units | undefined): void;
   dispose(): void;
 }
 
 const TITLE = "New settings";
+const UNTIL_REPAIR = "Until the valve is repaired";
 
 type Controller = NonNullable<LoopCure["settings"]>;
 
@@ -81,6 +82,16 @@ function figureList(cure: LoopCure): HTMLElement | null {
   );
 }
 
+function titleOf(cure: LoopCure): string {
+  if (cure.valve) return UNTIL_REPAIR;
+  return cure.settings ? TITLE : "The test that is missing for new settings";
+}
+
+function stopList({ valve }: LoopCure): HTMLElement | null {
+  if (!valve || valve.stops.length === 0) return null;
+  return h("ul", {}, valve.stops.map(({ detail }) => h("li", {}, withMinus(detail))));
+}
+
 export function cureCard(announce: (sentence: string) => void): CureCard {
   const heading = h("h2", { id: "loop-cure" }, TITLE);
   const body = h("div", { class: "stack" });
@@ -91,18 +102,18 @@ export function cureCard(announce: (sentence: string) => void): CureCard {
   function fill(cure: LoopCure | null, units: UnitNames): void {
     element.hidden = cure === null;
     if (!cure) return;
-    heading.textContent = cure.settings ? TITLE : "The test that is missing for new settings";
+    heading.textContent = titleOf(cure);
     body.replaceChildren(
-      ...[settingsTable(cure, units), figureList(cure), testList(cure, units)].filter((part) => part !== null),
+      ...[settingsTable(cure, units), figureList(cure), testList(cure, units), stopList(cure)].filter((part) => part !== null),
       h("p", { class: "hint" }, withMinus(cure.detail)),
     );
   }
 
-  async function ask(sent: CheckLoop, units: Units | undefined): Promise<void> {
+  async function ask(sent: CheckLoop, units: Units | undefined, title: string): Promise<void> {
     const mine = new AbortController();
     asked = mine;
-    heading.textContent = TITLE;
-    body.replaceChildren(h("p", { class: "hint" }, "Looking for new settings..."));
+    heading.textContent = title;
+    body.replaceChildren(h("p", { class: "hint" }, "Looking for settings..."));
     element.hidden = false;
     try {
       const cure = await cureOf(sent, units, mine.signal);
@@ -112,7 +123,7 @@ export function cureCard(announce: (sentence: string) => void): CureCard {
       if (cure) announce(`${heading.textContent}. ${cure.detail}`);
     } catch (error) {
       if (mine.signal.aborted) return;
-      const again = h("button", { type: "button", onclick: () => void ask(sent, units) }, "Try again");
+      const again = h("button", { type: "button", onclick: () => void ask(sent, units, title) }, "Try again");
       body.replaceChildren(h("p", {}, sentenceOf(error)), h("p", { class: "actions" }, again));
     }
   }
@@ -124,7 +135,8 @@ export function cureCard(announce: (sentence: string) => void): CureCard {
       const found = loop.cure ?? (sent ? known.get(sent) : undefined);
       if (found) return fill(found, unitNames(units));
       element.hidden = true;
-      if (sent && loop.action.code === "retune") void ask(sent, units);
+      if (sent && loop.action.code === "retune") void ask(sent, units, TITLE);
+      if (sent && loop.action.code === "repair-valve") void ask(sent, units, UNTIL_REPAIR);
     },
     dispose: () => asked?.abort(),
   };

@@ -158,7 +158,8 @@ function performanceRows({ performance }: ListedLoop, units: UnitNames): LoopFig
   return [
     ...new Rows(units, "LoopPerformance", why_null)
       .add("Mean error", "mean_error", "mean_error", performance.mean_error)
-      .add("Standard deviation", "variability", "variability", performance.variability).rows,
+      .add("Standard deviation", "variability", "variability", performance.variability)
+      .add("Standard deviation over the range", "variability", "variability_share", performance.variability_share ?? null, share, "%").rows,
     { label: "Harris range", about: "harris", text: harrisText + delays, why: harris ? "" : (why_null?.["harris"] ?? "") },
     ...new Rows(units, "LoopPerformance", why_null)
       .add("Idle index", "idle_index", "idle_index", performance.idle_index, (value) => formatNumber(value, 2))

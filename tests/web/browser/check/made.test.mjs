@@ -173,12 +173,15 @@ const cureAnswer = (cure) => {
   return { ...answer, loops: [{ ...answer.loops[4], cure }], clusters: [], cascades: [], ranking: [] };
 };
 
-test("where tuning is the cause, new settings stand next to today's", async () => {
+test("where tuning is the cause, new settings stand next to today's; where a valve sticks, what ends its cycle", async () => {
   const cure = { settings: SETTINGS, today: { ...SETTINGS, Kp: 4 }, worst_Ms: 1.45, error_ratio: 0.6, detail: "The record shows the plant." };
+  const stops = [{ means: "gap", Kp: 2, Ti: 20, gap: 0.5, error_ratio: [4, 5], standing_error: 0.4, detail: "With a gap the cycle ends." }];
+  const valve = { outcome: "found", stops, period: 50, amplitude: 1, recorded_amplitude: 1, detail: "" };
+  const ofValve = { worst_Ms: null, error_ratio: null, valve, detail: "Each has a cost.", why_null: {} };
   const asked = [];
   const check = (route) => {
     asked.push(route.request().postDataJSON());
-    return route.fulfill(json(cureAnswer(cure)));
+    return route.fulfill(json(cureAnswer(asked.at(-1).loops[0].tag === "FIC-102" ? ofValve : cure)));
   };
   await withJob(`${LIST}?loop=4`, made, {}, async (page) => {
     const card = page.getByRole("region", { name: "New settings" });
@@ -189,13 +192,14 @@ test("where tuning is the cause, new settings stand next to today's", async () =
     assert.equal(asked[0].settings, true);
     assert.deepEqual(asked[0].loops.map(({ tag }) => tag), ["PIC-105"]);
     assert.deepEqual(await accessibilityViolations(page), []);
-    // Known by now, and only where the loop has to be tuned.
+    // Known by now, and another card where a valve sticks.
     await page.getByRole("link", { name: /^‹ Previous/ }).click();
     await page.getByRole("heading", { name: "FIC-102", level: 1 }).waitFor();
+    await page.getByRole("region", { name: "Until the valve is repaired" }).getByRole("listitem").getByText("With a gap the cycle ends.").waitFor();
     assert.equal(await card.count(), 0);
     await page.getByRole("link", { name: /^Next/ }).click();
     await card.getByText("The record shows the plant.").waitFor();
-    assert.equal(asked.length, 1);
+    assert.equal(asked.length, 2);
   }, { "/v1/check": check });
 });
 

@@ -162,6 +162,8 @@ JobOutcome check_recorded(RecordedLoops recorded, const RunControl& control) {
     return outcome_of(std::move(result), units, "");
 }
 
+bool is_check_text(std::string_view request) { return is_check_request(Json::parse(request, nullptr, false)); }
+
 std::variant<std::string, Problem> joined_requests(std::string_view text) {
     auto whole = parse(text);
     if (std::holds_alternative<Json>(whole)) return std::string(text);

@@ -30,6 +30,9 @@ struct RecordedLoops {
 /// found on reading a loop is among the remarks on its record.
 JobOutcome check_recorded(RecordedLoops recorded, const RunControl& control);
 
+/// True for the text of a request that is a check.
+bool is_check_text(std::string_view request);
+
 /// One request from a text of requests, each in a line of its own (NDJSON): the loops of all of them, and the other
 /// members of the first. A single request is unchanged. 400 if a line is not JSON.
 std::variant<std::string, Problem> joined_requests(std::string_view text);

@@ -3,13 +3,16 @@
 #include <optional>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "api/batch/plant_checks.h"
+#include "api/check_service.h"
 #include "api/json/json.h"
 #include "api/json/utf8.h"
 #include "server/http/app/negotiation.h"
 #include "server/http/app/problems.h"
 #include "server/jobs/await.h"
+#include "server/routes/batch_checks.h"
 #include "server/routes/batch_results.h"
 #include "server/routes/job_access.h"
 #include "server/routes/job_json.h"
@@ -240,6 +243,18 @@ std::optional<Response> read_results_question(const http::Request& request, Resu
     return std::nullopt;
 }
 
+/// True for a batch of checks, by the first of its requests that could be read.
+bool is_of_checks(Batches& batches, JobService& jobs, const std::string& id) {
+    constexpr std::int64_t kMaxLookedAt = 50;
+    for (std::int64_t index = 0; index < kMaxLookedAt; ++index) {
+        const std::vector<BatchRow> rows = batches.rows(id, index, 1);
+        const std::optional<JobView> view = rows.empty() ? std::nullopt : jobs.find(rows.front().id);
+        if (!view) return false;
+        if (!view->job.request.empty()) return api::is_check_text(view->job.request);
+    }
+    return false;
+}
+
 Response get_results(Batches& batches, JobService& jobs, LongRequestSlots& places, Executor& lane, const Call& call) {
     ResultsQuestion question;
     question.batch = call.path.at("id");
@@ -248,6 +263,7 @@ Response get_results(Batches& batches, JobService& jobs, LongRequestSlots& place
     if (auto refusal = refuse_stranger(batches, call)) return *std::move(refusal);
     Response response;
     if (question.csv) {
+        question.of_checks = is_of_checks(batches, jobs, question.batch);
         response.set("Content-Type", "text/csv; charset=utf-8; header=present");
         response.set("Content-Disposition", "attachment; filename=\"batch-" + question.batch + ".csv\"");
     } else {
@@ -259,21 +275,6 @@ Response get_results(Batches& batches, JobService& jobs, LongRequestSlots& place
         return send(out);
     };
     return response;
-}
-
-constexpr std::int64_t kMaxCheckedLoops = 5000;  // read into memory for their common judgement
-constexpr std::size_t kRowsAtOnce = 100;
-
-/// Adds the entries that have ended.
-void add_checks(Batches& batches, const std::string& id, api::PlantChecks& checks) {
-    for (std::int64_t next = 0;;) {
-        const std::vector<BatchRow> rows = batches.rows(id, next, kRowsAtOnce);
-        if (rows.empty()) return;
-        for (const BatchRow& row : rows) {
-            if (has_ended(row.status)) checks.add(row.index, row.id, row.result);
-            next = row.index + 1;
-        }
-    }
 }
 
 /// The batch that `before` names, or a refusal.
@@ -292,25 +293,16 @@ std::variant<std::optional<std::string>, Response> earlier_batch(const http::Req
 
 Response check_of_batch(Batches& batches, const Call& call, const std::optional<std::string>& before) {
     const std::string& id = call.path.at("id");
-    std::optional<api::PlantChecks> earlier;
-    for (const std::string& name : {before.value_or(id), id}) {
-        const std::optional<BatchSummary> batch = batches.find(name);
-        if (!batch || !may_see(call.request, *batch)) return no_such_batch(name);
-        if (static_cast<std::int64_t>(batch->total) > kMaxCheckedLoops)
-            return problem_response(
-                422, "The batch has " + std::to_string(batch->total) + " entries; loops are judged together up to " +
-                         std::to_string(kMaxCheckedLoops) + ". Check a part of the plant at a time.");
-        if (!before || name != *before) break;
-        add_checks(batches, name, earlier.emplace());
+    std::optional<BatchOfChecks> earlier;
+    if (before) {
+        auto read = read_checks(batches, call.request, *before);
+        if (auto* refusal = std::get_if<Response>(&read)) return std::move(*refusal);
+        earlier = std::get<BatchOfChecks>(std::move(read));
     }
-    api::PlantChecks checks;
-    const std::optional<BatchSummary> batch = batches.find(id);
-    if (!batch) return no_such_batch(id);
-    add_checks(batches, id, checks);
-    if (checks.loops() == 0 && batch->ended())
-        return problem_response(409,
-                                "The batch has no checked loop. It must be one of kind=check, or of check requests.");
-    return http::json_response(checks.answer(batch->ended(), earlier ? &*earlier : nullptr), 200);
+    auto read = read_checks(batches, call.request, id);
+    if (auto* refusal = std::get_if<Response>(&read)) return std::move(*refusal);
+    const auto& now = std::get<BatchOfChecks>(read);
+    return http::json_response(now.checks.answer(now.batch.ended(), earlier ? &earlier->checks : nullptr), 200);
 }
 
 Response get_check(Batches& batches, ComputeSlots& readers, const Call& call) {
@@ -361,8 +353,9 @@ void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, 
     router.add("GET", "/v1/batches", [&](const Call& call) { return list_batches(batches, listers, call); });
     router.add("GET", "/v1/batches/{id}", [&](const Call& call) { return get_batch(batches, call); });
     router.add("DELETE", "/v1/batches/{id}", [&](const Call& call) { return delete_batch(batches, call); });
-    router.add("GET", "/v1/batches/{id}/results",
-               [&](const Call& call) { return get_results(batches, jobs, places, lane, call); });
+    router.add("GET", "/v1/batches/{id}/results", [&](const Call& call) {
+        return guarded([&] { return get_results(batches, jobs, places, lane, call); });
+    });
     router.add("GET", "/v1/batches/{id}/check", [&](const Call& call) { return get_check(batches, listers, call); });
     router.add("POST", "/v1/batches/{id}/cancel", [&](const Call& call) { return cancel_batch(batches, call); });
 }

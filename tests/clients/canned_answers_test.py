@@ -104,8 +104,11 @@ class CannedTest(unittest.TestCase):
         self.assertEqual([loop["tag"] for loop in check.work_list], ["B", "A"])
         client.changes("old", check)
         self.assertEqual(self.server.calls[-1][1], "/v1/batches/b/check?before=old")
+        self.server.answers.append((200, {}, b"<html>"))
+        self.assertEqual(client.report_html(check), "<html>")
+        self.assertEqual(self.server.calls[-1][1], "/v1/batches/b/report.html")
         with self.assertRaisesRegex(LookupError, "a batch, b"):
-            client.report_html(check)
+            client.code(check, "c")
 
     def test_a_check_of_a_folder_has_a_loop_for_each_file(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -189,6 +189,8 @@ class Client:
     def report_html(self, job: Union[str, Result, Check], controller: Optional[int] = None) -> str:
         """A report of a job's controller, as a page to print, sign and keep; by default of the first of the ranking.
         The report of a check has its work list and a page for each loop."""
+        if isinstance(job, Check) and job.job is None:
+            return self._body("/v1/batches/%s/report.html" % quote(_batch(job), safe=""))
         return self._body(_job(job) + "/report.html" + _query({"controller": controller}))
 
     def code(self, job: Union[str, Result], language: str, controller: Optional[int] = None, **options: Any) -> str:

@@ -1,6 +1,9 @@
 """Records of many loops over HTTP: each loop becomes a job."""
 
+import csv
+import io
 import unittest
+import xml.etree.ElementTree
 
 from batch_bodies import rows_of, wait_for_end
 from check_command_test import plant
@@ -57,6 +60,34 @@ class RecordedBatchTest(unittest.TestCase):
         rows = self.rows(self.post("\n".join(table)))
         self.assertEqual([(row["name"], row["status"]) for row in rows], [("FIC1", "succeeded"), ("FIC2", "failed")])
         self.assertIn("FIC2", rows[1]["error"]["detail"])
+
+    def test_the_batch_has_a_report_and_a_line_for_each_loop(self):
+        good, bad = plant(["FIC1", "FIC2"]).splitlines(), plant(["FIC3"], quiet=True).splitlines()
+        table = [a + "," + b.split(",", 1)[1] for a, b in zip(good, bad)]
+        batch = self.post("\n".join(table), "&name=unit+7")
+        wait_for_end(self.service, batch["id"])
+        address = "/v1/batches/" + batch["id"]
+        report = self.service.get(address + "/report.html?utc_offset=60")
+        self.assertEqual((report.status, report.headers["Content-Type"]), (200, "text/html; charset=utf-8"))
+        text = report.body.decode()
+        xml.etree.ElementTree.fromstring(text.replace("<!DOCTYPE html>", ""))
+        self.assertIn("<h1>unit 7: loop check</h1>", text)
+        self.assertEqual(text.count('<section class="loop">'), 2)
+        self.assertIn("Whole record", text)
+        self.assertIn("FIC3: Request 3, FIC3: FIC3.PV has no value of good quality.", text)
+        self.assertEqual(self.service.get(address + "/report.html?from=3").status, 422)
+        self.assertEqual(self.service.get("/v1/batches/none/report.html").status, 404)
+        lines = list(csv.DictReader(io.StringIO(self.service.get(address + "/results?format=csv").body.decode())))
+        self.assertEqual([(line["tag"], line["status"]) for line in lines],
+                         [("FIC1", "succeeded"), ("FIC2", "succeeded"), ("", "failed")])
+        alone = self.rows(batch)[0]["result"]
+        self.assertEqual(lines[0]["verdict"], alone["loops"][0]["cause"]["verdict"])
+        self.assertEqual(float(lines[0]["mean_error"]), alone["loops"][0]["performance"]["mean_error"])
+        self.assertIn("no value of good quality", lines[2]["error"])
+        tuned = self.service.post("/v1/batches", "name,K,T,L\na,1,2,3\n", TEXT).json
+        wait_for_end(self.service, tuned["id"])
+        self.assertEqual(self.service.get("/v1/batches/%s/report.html" % tuned["id"]).status, 409)
+        self.assertIn("Kp", self.service.get("/v1/batches/%s/results?format=csv" % tuned["id"]).body.decode().splitlines()[0])
 
     def test_parameters(self):
         body = plant(["FIC1"])

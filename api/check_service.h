@@ -22,6 +22,8 @@ Answer check_call(std::string_view body, const RunControl& control);  ///< POST 
 /// Loops from files (api/historian), without a request around them.
 struct RecordedLoops {
     std::vector<TaggedLoop> loops;
+    std::vector<LoopFacts> facts;          ///< of each loop; empty: nothing is known
+    std::vector<std::string> notes;        ///< findings about the files
     std::optional<std::string> time_unit;  ///< of their times and of the answer; empty: s
     bool settings = false;                 ///< as in CheckRequest
 };

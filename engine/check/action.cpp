@@ -60,8 +60,9 @@ Action action_for(const LoopCheck& check, const std::string& source) {
                 return {check_range, Owner::instruments,
                         "Look at the range of the transmitter: at its end the measurement does not move, and the loop "
                         "does not see what it controls."};
-            return {record_again, Owner::control,
-                    check.quality.rows == 0 ? "Check this loop again." : "Record again, for longer or with raw values."};
+            return {
+                record_again, Owner::control,
+                check.quality.rows == 0 ? "Check this loop again." : "Record again, for longer or with raw values."};
     }
     return {};
 }

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "api/batch/multipart.h"
 #include "api/batch/plant_checks.h"
 #include "api/check_service.h"
 #include "api/json/json.h"
@@ -38,9 +39,11 @@ Response about_batch(Batches& batches, const http::Request& request, const std::
     });
 }
 
-Response batch_response(Batches& batches, const http::Request& request, const std::string& id, int status) {
-    return about_batch(batches, request, id,
-                       [&](const BatchSummary& batch) { return http::json_response(batch_json(batch), status); });
+Response batch_response(Batches& batches, const http::Request& request, const std::string& id, int status,
+                        const std::vector<std::string>& notes = {}) {
+    return about_batch(batches, request, id, [&](const BatchSummary& batch) {
+        return http::json_response(batch_json(batch, notes), status);
+    });
 }
 
 std::optional<Response> refuse_stranger(Batches& batches, const Call& call) {
@@ -52,7 +55,8 @@ std::optional<Response> refuse_stranger(Batches& batches, const Call& call) {
 // ---- POST /v1/batches ------------------------------------------------------------------------------------------
 
 /// The form according to the media type; empty without a refusal if the body's first bytes decide.
-std::optional<Response> read_form(const http::Request& request, std::optional<api::BatchForm>& form) {
+std::optional<Response> read_form(const http::Request& request, api::BatchQuestion& question) {
+    std::optional<api::BatchForm>& form = question.form;
     const std::string type = http::media_type(request);
     if (type.empty() || type == "application/x-www-form-urlencoded" || type == "application/octet-stream")
         return std::nullopt;
@@ -63,13 +67,25 @@ std::optional<Response> read_form(const http::Request& request, std::optional<ap
         form = api::BatchForm::ndjson;
     } else if (type == "text/csv" || type == "application/csv" || type == "text/tab-separated-values") {
         form = api::BatchForm::csv;
+    } else if (type == "multipart/form-data") {
+        form = api::BatchForm::files;
+        question.boundary = api::boundary_of(request.header("Content-Type"));
+        constexpr std::size_t kMaxBoundary = 70;
+        if (question.boundary.empty() || question.boundary.size() > kMaxBoundary)
+            return problem_response(400, "The Content-Type must name the boundary of the parts.");
     } else {
         return problem_response(
             415,
             "The body must be application/json ({\"jobs\": [...]}), application/x-ndjson (one "
-            "request per line) or text/csv (one loop per line, or recorded loops with kind=check).");
+            "request per line), text/csv (one loop per line, or recorded loops with kind=check) or, with kind=check, "
+            "multipart/form-data (files of recorded loops).");
     }
     return std::nullopt;
+}
+
+bool holds_records(const api::BatchQuestion& question) {
+    const api::BatchForm form = question.form.value_or(api::BatchForm::csv);
+    return question.kind == api::BatchKind::check && (form == api::BatchForm::csv || form == api::BatchForm::files);
 }
 
 /// Reads and checks the notification in the parameters.
@@ -103,9 +119,13 @@ std::optional<Response> read_kind(const http::Request& request, api::BatchQuesti
             question.options.emplace_back(name, value);
         else if (name == "units.time")
             question.time_unit = value;
+        else if (name == "settings" && (value == "true" || value == "false"))
+            question.settings = value == "true";
+        else if (name == "settings")
+            refuse_parameter(problem, name, value, "it must be true or false.");
         else
             refuse_parameter(problem, name, value,
-                             "the only parameters of a check are kind, name, units.time, notify_url "
+                             "the only parameters of a check are kind, name, units.time, settings, notify_url "
                              "and notify_secret_id.");
     }
     if (!problem.errors.empty()) return http::problem_response(problem);
@@ -116,7 +136,7 @@ std::optional<Response> read_kind(const http::Request& request, api::BatchQuesti
 std::optional<Response> read_order(const http::Request& request, NotifyPolicy& policy, const BatchLimits& limits,
                                    BatchOrder& order) {
     if (auto refusal = refuse_form(request)) return refusal;
-    if (auto refusal = read_form(request, order.question.form)) return refusal;
+    if (auto refusal = read_form(request, order.question)) return refusal;
     order.idempotency_key = request.header("Idempotency-Key");
     if (auto refusal = refuse_key(order.idempotency_key)) return refusal;
     for (const auto& [name, value] : request.query) {
@@ -129,6 +149,8 @@ std::optional<Response> read_order(const http::Request& request, NotifyPolicy& p
             order.question.options.emplace_back(name, value);
     }
     if (auto refusal = read_kind(request, order.question)) return refusal;
+    if (order.question.form == api::BatchForm::files && !holds_records(order.question))
+        return problem_response(422, "multipart/form-data has files of recorded loops. Add kind=check to the address.");
     if (auto refusal = judge_notify(policy, request, order)) return refusal;
     if (order.question.name.size() > kMaxNameLength)
         return problem_response(
@@ -145,7 +167,7 @@ Response receipt_response(Batches& batches, const http::Request& request, const 
     switch (receipt.kind) {
         case BatchReceipt::Kind::created:
         case BatchReceipt::Kind::existing: {
-            Response response = batch_response(batches, request, receipt.id, 202);
+            Response response = batch_response(batches, request, receipt.id, 202, receipt.notes);
             if (response.status == 202) response.set("Location", "/v1/batches/" + receipt.id);
             return response;
         }
@@ -172,9 +194,7 @@ Response post_batch(Batches& batches, LongRequestSlots& places, LongRequestSlots
     const auto place = places.take(call.request.client);
     if (!place) return problem_response(503, "Too many batches are being received. Try again in a moment.");
     std::optional<LongRequestSlots::Slot> alone;
-    const bool columns = order.question.kind == api::BatchKind::check &&
-                         order.question.form.value_or(api::BatchForm::csv) == api::BatchForm::csv;
-    if (columns && !(alone = recorded.take(call.request.client)))
+    if (holds_records(order.question) && !(alone = recorded.take(call.request.client)))
         return problem_response(503, "Another file of recorded loops is being received. Try again in a moment.");
     return receipt_response(batches, call.request, batches.receive(std::move(order), call.request.read_body));
 }

@@ -13,13 +13,13 @@
 namespace tunewright {
 
 struct LoopCure {
-    std::optional<IdealPid> settings;        ///< the design that holds its limit on all plants that fit the record
-    std::optional<IdealPid> today;           ///< as given, or as the record shows them
-    std::optional<Plant> plant;              ///< identified
-    Figure worst_Ms;                         ///< of the settings, over the record's 95 % region
-    Figure error_ratio;                      ///< mean magnitude of the error in the recorded time, new over old
-    std::optional<TestPlan> test;            ///< without settings
-    std::string detail;                      ///< one sentence: what to do, or why the record does not suffice
+    std::optional<IdealPid> settings;  ///< the design that holds its limit on all plants that fit the record
+    std::optional<IdealPid> today;     ///< as given, or as the record shows them
+    std::optional<Plant> plant;        ///< identified
+    Figure worst_Ms;                   ///< of the settings, over the record's 95 % region
+    Figure error_ratio;                ///< mean magnitude of the error in the recorded time, new over old
+    std::optional<TestPlan> test;      ///< without settings
+    std::string detail;                ///< one sentence: what to do, or why the record does not suffice
 };
 
 /// Empty where tuning is not the cause. Identification and design take up to some seconds.

@@ -10,6 +10,23 @@ from check_command_test import plant
 from service import Service
 
 TEXT = {"Content-Type": "text/csv"}
+FORM = {"Content-Type": "multipart/form-data; boundary=cut"}
+
+
+def form(*parts):
+    """A body of parts (name, file, text), as curl -F sends them."""
+    body = ""
+    for name, file, text in parts:
+        head = 'form-data; name="%s"' % name + ('; filename="%s"' % file if file else "")
+        body += "--cut\r\nContent-Disposition: %s\r\nContent-Type: text/csv\r\n\r\n%s\r\n" % (head, text)
+    return body + "--cut--\r\n"
+
+
+def tag_file(tag, part, rows=400):
+    """Time and value of one tag of plant([tag])."""
+    column = {"PV": 1, "OP": 2}[part]
+    lines = plant([tag], rows).splitlines()
+    return "\n".join(["Time,Value"] + [",".join((line.split(",")[0], line.split(",")[column])) for line in lines[1:]])
 
 
 class RecordedBatchTest(unittest.TestCase):
@@ -60,6 +77,45 @@ class RecordedBatchTest(unittest.TestCase):
         rows = self.rows(self.post("\n".join(table)))
         self.assertEqual([(row["name"], row["status"]) for row in rows], [("FIC1", "succeeded"), ("FIC2", "failed")])
         self.assertIn("FIC2", rows[1]["error"]["detail"])
+
+    def test_what_is_known_of_the_loops_comes_with_them(self):
+        table = "tag,kind,op_low,op_high,weight\nFIC2,level,0,40,12.5\nFIC9,flow,,,\n"
+        batch = self.post(form(("loops", "", table), ("file", "day.csv", plant(["FIC1", "FIC2"]))), "&settings=true",
+                          FORM)
+        self.assertEqual(batch["notes"], ["FIC9 is in the table of loops, but no record has this tag."])
+        self.assertNotIn("notes", self.service.get("/v1/batches/" + batch["id"]).json)
+        rows = self.rows(batch)
+        request = self.service.get("/v1/jobs/" + rows[1]["id"]).json["request"]
+        self.assertTrue(request["settings"])
+        self.assertEqual({name: request["loops"][0][name] for name in ("tag", "kind", "range", "weight")},
+                         {"tag": "FIC2", "kind": "level", "range": {"op": [0, 40]}, "weight": 12.5})
+        self.assertEqual([row["result"]["loops"][0].get("weight") for row in rows], [None, 12.5])
+        problem = self.post(form(("loops", "", "tag,kind\nFIC1,flow\nFIC2,flw\n"), ("file", "a", plant(["FIC1"]))),
+                            headers=FORM, status=422)
+        self.assertIn("Line 3, kind", problem["errors"][0]["detail"])
+        self.assertEqual(self.service.post("/v1/batches", form(), FORM).status, 422)
+        self.assertEqual(self.service.post("/v1/batches?kind=check", "x", {"Content-Type": "multipart/form-data"}).status,
+                         400)
+
+    def test_a_file_for_each_tag(self):
+        whole = self.rows(self.post(plant(["FIC1"])))[0]["result"]["loops"][0]
+        batch = self.post(form(("file", "FIC1.PV.csv", tag_file("FIC1", "PV")),
+                               ("file", "FIC1.OP.csv", tag_file("FIC1", "OP")),
+                               ("file", "TI3.PV.csv", tag_file("TI3", "PV"))), headers=FORM)
+        self.assertEqual(batch["total"], 1)
+        self.assertIn("TI3 has only a measurement", batch["notes"][0])
+        loop = self.rows(batch)[0]["result"]["loops"][0]
+        self.assertEqual((loop["tag"], loop["quality"]["rows"], loop["cause"]["verdict"]),
+                         ("FIC1", 400, whole["cause"]["verdict"]))
+        self.assertEqual(loop["performance"], whole["performance"])
+
+    def test_findings_of_reading_are_remarks_on_the_record(self):
+        lines = plant(["FIC1"]).splitlines()
+        lines[7] = lines[7].split(",")[0] + ",Bad," + lines[7].split(",")[2]
+        loop = self.rows(self.post("\n".join(lines)))[0]["result"]["loops"][0]
+        self.assertIn({"code": "file-read", "level": "warning",
+                       "detail": "1 value of the measurement or the output is of bad quality and counts as missing."},
+                      loop["quality"]["remarks"])
 
     def test_the_batch_has_a_report_and_a_line_for_each_loop(self):
         good, bad = plant(["FIC1", "FIC2"]).splitlines(), plant(["FIC3"], quiet=True).splitlines()

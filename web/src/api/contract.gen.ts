@@ -140,6 +140,7 @@ export type components = {
       cancel_requested: boolean;
       created_at: string;
       finished_at: string | null;
+      notes?: string[];
       links: {
         [key: string]: string;
       };
@@ -1093,14 +1094,15 @@ export type components = {
       tag?: string;
       kind?: "unknown" | "flow" | "pressure" | "level" | "temperature" | "composition";
       averaging?: boolean;
+      range?: components["schemas"]["LoopRanges"];
+      controller?: components["schemas"]["Controller"];
+      weight?: number;
       record?: components["schemas"]["Record"];
       csv?: string;
       columns?: components["schemas"]["Columns"];
       time_unit?: string;
       start?: string;
-      range?: components["schemas"]["LoopRanges"];
-      controller?: components["schemas"]["Controller"];
-      weight?: number;
+      notes?: string[];
     };
     LoopRanges: {
       pv?: [
@@ -1121,6 +1123,7 @@ export type components = {
       units?: components["schemas"]["Units"];
       version: string;
       request_hash: string;
+      notes?: string[];
     };
     LoopCheck: {
       tag: string;
@@ -1148,9 +1151,13 @@ export type components = {
       noise: number;
       y_step: number;
       u_step: number;
+      at_limit: number | null;
       compressed: boolean;
       enough: boolean;
       remarks: components["schemas"]["Warning"][];
+      why_null?: {
+        [key: string]: string;
+      };
     };
     LoopService: {
       automatic: number | null;
@@ -1199,6 +1206,7 @@ export type components = {
       harris: components["schemas"]["HarrisRange"] | null;
       idle_index: number | null;
       variability: number;
+      variability_share: number | null;
       mean_error: number;
       independent: number;
       following: number | null;
@@ -1310,6 +1318,7 @@ export type components = {
       trend: components["schemas"]["LoopTrend"];
       index: number;
       job: string;
+      units?: components["schemas"]["Units"];
     };
     LoopChange: {
       before: "healthy" | "stiction" | "backlash" | "tight" | "sluggish" | "external" | "saturation" | "quantised" | "manual" | "frozen" | "undetermined" | "insufficient-data";

@@ -18,11 +18,21 @@
 namespace tunewright::api {
 namespace {
 
-/// Loops that could be read, and the others with their place.
+/// Loops that could be read, with the findings of reading each, and the others with their place.
 struct ReadLoops {
     CheckQuestion question;
     std::vector<std::size_t> places;
     std::vector<std::pair<std::size_t, CheckedLoop>> unreadable;
+    std::vector<std::vector<std::string>> notes;  ///< of the loops of the question
+
+    void add(ReadLoop loop, std::size_t place) {
+        question.loops.push_back(std::move(loop.question));
+        notes.push_back(std::move(loop.notes));
+        places.push_back(place);
+    }
+    void add_unreadable(std::string tag, const std::string& why, std::size_t place) {
+        unreadable.emplace_back(place, CheckedLoop{check::unreadable_loop(std::move(tag), why), {}});
+    }
 };
 
 ReadLoops read_loops(CheckRequest&& request) {
@@ -32,39 +42,35 @@ ReadLoops read_loops(CheckRequest&& request) {
     const Units units = request.units.value_or(Units{});
     for (std::size_t i = 0; i < request.loops.size(); ++i) {
         std::string tag = tag_of(request.loops[i], i);
-        auto question = question_of(std::move(request.loops[i]), units, i);
-        if (question) {
-            out.question.loops.push_back(std::move(*question.value));
-            out.places.push_back(i);
-        } else {
-            out.unreadable.emplace_back(i, CheckedLoop{check::unreadable_loop(std::move(tag), question.why), {}});
-        }
+        auto loop = question_of(std::move(request.loops[i]), units, i);
+        loop ? out.add(std::move(*loop.value), i) : out.add_unreadable(std::move(tag), loop.why, i);
     }
     return out;
 }
 
-/// The modes as the record of a loop has them: an unknown word counts as manual, and rows before the first mode have
-/// that one. Empty if no word is known.
-std::vector<bool> automatic_rows(const TaggedLoop& loop) {
-    std::vector<std::optional<bool>> meanings;
-    for (const std::string& word : loop.mode_words) meanings.push_back(mode_word(word));
-    if (std::ranges::none_of(meanings, [](const auto& meaning) { return meaning.has_value(); })) return {};
-    std::vector<bool> out;
-    out.reserve(loop.mode.size());
-    const auto first = std::ranges::find_if(loop.mode, [](std::uint8_t mode) { return mode != 0; });
-    for (auto mode = loop.mode.begin(); mode != loop.mode.end(); ++mode)
-        out.push_back(meanings[mode < first && first != loop.mode.end() ? *first : *mode].value_or(false));
-    return out;
+/// Gives the record the modes of the loop, as a record in CSV has them, and notes those that are not known.
+void read_modes(const TaggedLoop& loop, ReadLoop& out) {
+    if (loop.mode.empty()) return;
+    ModeColumn column;
+    for (const std::uint8_t mode : loop.mode) {
+        column.see(loop.mode_words[mode]);
+        column.add_row();
+    }
+    if (std::string unknown = column.unknown(); !unknown.empty()) out.notes.push_back(std::move(unknown));
+    out.question.record.automatic = column.take();
 }
 
-check::LoopQuestion question_about(TaggedLoop loop, const std::string& time_unit) {
+ReadLoop read_loop(TaggedLoop loop, const LoopFacts& facts, const std::string& time_unit) {
     const double seconds = seconds_per(time_unit).value_or(1);
-    check::LoopQuestion question;
+    ReadLoop out;
+    check::LoopQuestion& question = out.question;
+    out.notes = reading_notes(loop);
+    read_modes(loop, out);
     question.kind = kind_of_tag(loop.tag).kind;
     question.tag = std::move(loop.tag);
     question.seconds = seconds;
     question.units.time = time_unit;
-    question.record.automatic = automatic_rows(loop);
+    add_facts(facts, question);
     if (loop.epoch) {
         const double zero = loop.t.front();
         question.start = *loop.epoch + zero * seconds;
@@ -74,7 +80,7 @@ check::LoopQuestion question_about(TaggedLoop loop, const std::string& time_unit
     question.record.y = std::move(loop.y);
     question.record.u = std::move(loop.u);
     if (hold_reference(loop.r)) question.record.r = std::move(loop.r);
-    return question;
+    return out;
 }
 
 ReadLoops read_recorded(RecordedLoops& recorded) {
@@ -83,20 +89,21 @@ ReadLoops read_recorded(RecordedLoops& recorded) {
     const std::string time_unit = recorded.time_unit.value_or("s");
     for (std::size_t i = 0; i < recorded.loops.size(); ++i) {
         TaggedLoop loop = std::exchange(recorded.loops[i], {});
-        if (loop.fault) {
-            out.unreadable.emplace_back(i, CheckedLoop{check::unreadable_loop(loop.tag, *loop.fault), {}});
-            continue;
-        }
-        out.question.loops.push_back(question_about(std::move(loop), time_unit));
-        out.places.push_back(i);
+        const LoopFacts facts = i < recorded.facts.size() ? recorded.facts[i] : LoopFacts{};
+        loop.fault ? out.add_unreadable(std::move(loop.tag), *loop.fault, i)
+                   : out.add(read_loop(std::move(loop), facts, time_unit), i);
     }
     return out;
 }
 
-/// The engine's answer, with the loops that could not be read in their places.
+/// The engine's answer, with the findings of reading and with the loops that could not be read in their places.
 Expected<CheckResult> checked(ReadLoops loops, const RunControl& control) {
     auto result = ask_check(loops.question, control);
-    if (!result || loops.unreadable.empty()) return result;
+    if (!result) return result;
+    for (std::size_t i = 0; i < loops.notes.size(); ++i)
+        for (std::string& note : loops.notes[i])
+            result->loops[i].quality.remarks.push_back({"file-read", std::move(note), WarningLevel::warning});
+    if (loops.unreadable.empty()) return result;
     for (auto& [place, loop] : loops.unreadable)
         result->loops.insert(result->loops.begin() + static_cast<std::ptrdiff_t>(place), std::move(loop));
     result->plant = judged_together(result->loops, loops.question.cluster);
@@ -125,7 +132,7 @@ std::string outline_of(const CheckResult& result, const std::optional<Units>& un
     return out.take();
 }
 
-JobOutcome outcome_of(Expected<CheckResult> result, const std::optional<Units>& units, std::string_view hash) {
+JobOutcome outcome_of(Expected<CheckResult> result, CheckAnswer rest) {
     JobOutcome outcome;
     outcome.method = "check";
     if (!result) {
@@ -136,9 +143,10 @@ JobOutcome outcome_of(Expected<CheckResult> result, const std::optional<Units>& 
         return outcome;
     }
     outcome.status = result->partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
-    outcome.outline_json = outline_of(*result, units);
+    outcome.outline_json = outline_of(*result, rest.units);
     Writer out;
-    check_result_contract().write({std::move(*result), units, std::string(hash)}, out);
+    rest.check = std::move(*result);
+    check_result_contract().write(rest, out);
     outcome.result_json = out.take();
     return outcome;
 }
@@ -146,21 +154,18 @@ JobOutcome outcome_of(Expected<CheckResult> result, const std::optional<Units>& 
 }  // namespace
 
 JobOutcome check_outcome(CheckRequest request, std::string_view hash, const RunControl& control) {
-    const std::optional<Units> units = request.units;
-    return outcome_of(checked(read_loops(std::move(request)), control), units, hash);
+    CheckAnswer rest{{}, request.units, std::string(hash), {}};
+    return outcome_of(checked(read_loops(std::move(request)), control), std::move(rest));
 }
 
 JobOutcome check_recorded(RecordedLoops recorded, const RunControl& control) {
-    std::optional<Units> units;
-    if (recorded.time_unit) units.emplace().time = recorded.time_unit;
-    std::vector<std::vector<std::string>> notes;
-    for (TaggedLoop& loop : recorded.loops) notes.push_back(std::move(loop.notes));
-    auto result = checked(read_recorded(recorded), control);
-    for (std::size_t i = 0; result && i < notes.size(); ++i)
-        for (std::string& note : notes[i])
-            result->loops[i].quality.remarks.push_back({"file-read", std::move(note), WarningLevel::warning});
-    return outcome_of(std::move(result), units, "");
+    CheckAnswer rest;
+    if (recorded.time_unit) rest.units.emplace().time = recorded.time_unit;
+    rest.notes = std::move(recorded.notes);
+    return outcome_of(checked(read_recorded(recorded), control), std::move(rest));
 }
+
+bool is_check_text(std::string_view request) { return is_check_request(Json::parse(request, nullptr, false)); }
 
 std::variant<std::string, Problem> joined_requests(std::string_view text) {
     auto whole = parse(text);

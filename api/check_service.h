@@ -22,6 +22,8 @@ Answer check_call(std::string_view body, const RunControl& control);  ///< POST 
 /// Loops from files (api/historian), without a request around them.
 struct RecordedLoops {
     std::vector<TaggedLoop> loops;
+    std::vector<LoopFacts> facts;          ///< of each loop; empty: nothing is known
+    std::vector<std::string> notes;        ///< findings about the files
     std::optional<std::string> time_unit;  ///< of their times and of the answer; empty: s
     bool settings = false;                 ///< as in CheckRequest
 };
@@ -29,6 +31,9 @@ struct RecordedLoops {
 /// The answer about them, as that of a job whose requests are those of loop_request(); it has no request_hash. What was
 /// found on reading a loop is among the remarks on its record.
 JobOutcome check_recorded(RecordedLoops recorded, const RunControl& control);
+
+/// True for the text of a request that is a check.
+bool is_check_text(std::string_view request);
 
 /// One request from a text of requests, each in a line of its own (NDJSON): the loops of all of them, and the other
 /// members of the first. A single request is unchanged. 400 if a line is not JSON.

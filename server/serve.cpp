@@ -186,7 +186,7 @@ private:
         NotifierSettings made;
         made.now = [this] { return now(); };
         made.job_text = notification_job_json;
-        made.batch_text = batch_json;
+        made.batch_text = [](const BatchSummary& batch) { return batch_json(batch); };
         made.count = [this](DeliveryOutcome outcome) { metrics_.count(outcome); };
         made.version = TUNEWRIGHT_VERSION;
         return made;

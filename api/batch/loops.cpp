@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "api/csv/columns/column_facts.h"
 #include "api/csv/columns/heading.h"
 #include "api/csv/table.h"
 #include "api/describe/suggest.h"
@@ -42,13 +43,6 @@ Problem not_valid(std::string title, std::vector<FieldError> errors) {
 }
 
 Problem refused(std::string detail) { return not_valid("The CSV of loops cannot be read", {{"", std::move(detail)}}); }
-
-std::string in_quotes(std::string_view text) {
-    constexpr std::size_t kLongest = 40;
-    std::size_t end = std::min(text.size(), kLongest);
-    while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-    return "\"" + std::string(text.substr(0, end)) + (end < text.size() ? "...\"" : "\"");
-}
 
 /// Sets the value at a path: "filter/Tf" opens an object.
 void place(Json& object, std::string_view path, Json value) {

@@ -25,18 +25,23 @@ void compare(const std::deque<check::LoopCheck>& now, const std::deque<check::Lo
 
 }  // namespace
 
-void PlantChecks::add(std::int64_t index, std::string_view id, std::string_view result) {
-    const Json parsed = Json::parse(result, nullptr, false);
+void PlantChecks::add(const CheckEntry& entry) {
+    const Json parsed = Json::parse(entry.result, nullptr, false);
     if (!parsed.is_object() || !parsed.contains("loops")) {
-        ++failed_;
+        const Json error = Json::parse(entry.error, nullptr, false);
+        failed_.push_back({std::string(entry.name), error.is_object() ? error.value("detail", "") : ""});
         return;
     }
+    std::size_t place = 0;
     for (const Json& loop : parsed["loops"]) {
         checks_.push_back(read_loop_check(loop));
+        sources_.push_back({entry.index, place++});
         Json kept = loop;
         for (const char* name : kLeftOut) kept.erase(name);
-        kept["index"] = index;
-        kept["job"] = std::string(id);
+        if (kept_ == Kept::none) kept.erase("trend");
+        kept["index"] = entry.index;
+        kept["job"] = std::string(entry.id);
+        if (parsed.contains("units")) kept["units"] = parsed["units"];
         std::string text = kept.dump();
         text.pop_back();
         texts_.push_back(std::move(text));
@@ -58,7 +63,7 @@ std::string PlantChecks::answer(bool complete, const PlantChecks* before) const 
     }
     if (before != nullptr) compare(judged, before->checks_, out);
     out.complete = complete;
-    out.failed = failed_;
+    out.failed = static_cast<int>(failed_.size());
     Writer text;
     batch_check_contract().write(out, text);
     return text.take();

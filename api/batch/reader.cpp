@@ -4,8 +4,13 @@
 #include <utility>
 
 #include "api/batch/jobs_array.h"
+#include "api/batch/known_loops.h"
+#include "api/batch/multipart.h"
 #include "api/batch/pieces.h"
+#include "api/batch/recorded_file.h"
 #include "api/contract/terms.h"
+#include "api/csv/time_stamp.h"
+#include "api/historian/joined_loops.h"
 #include "api/historian/loop_request.h"
 #include "api/historian/loops_reader.h"
 #include "api/json/json.h"
@@ -41,6 +46,8 @@ public:
     virtual std::string name() const { return {}; }
     /// The text of `notify` in the body.
     virtual std::string notify() const { return {}; }
+    /// Findings about the body; after the last finish().
+    virtual std::vector<std::string> notes() const { return {}; }
     /// False if each request states its own method, options and units.
     virtual bool takes_options() const { return false; }
 };
@@ -125,56 +132,39 @@ private:
     bool checked_ = false;
 };
 
-/// Cuts records of many loops into a request for each. All of them come at the end, in portions of about a megabyte.
-class BatchReader::RecordedLoopsCutter : public Cutter {
+/// Recorded loops as requests.
+class BatchReader::LoopEntries {
 public:
-    explicit RecordedLoopsCutter(const BatchQuestion& question)
-        : options_(options_of(question)),
-          longest_entry_(question.longest_entry),
-          reader_(options_),
-          lines_(Lines::Ends::any, kMaxRecordLine) {}
-
-    std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>&) override {
-        std::optional<Problem> problem;
-        lines_.feed(bytes, taker(problem));
-        return problem;
+    explicit LoopEntries(const BatchQuestion& question) : longest_entry_(question.longest_entry) {
+        options_.time_unit_given = question.time_unit.has_value();
+        if (question.time_unit) options_.time_unit = *question.time_unit;
+        if (!question.name.empty()) options_.name = question.name;
+        terms_ = {options_.time_unit, options_.time_unit_given, question.settings};
     }
 
-    std::optional<Problem> finish(std::vector<RawEntry>& entries) override {
-        std::optional<Problem> problem;
-        if (!std::exchange(ended_, true)) {
-            lines_.finish(taker(problem));
-            if (!problem) problem = reader_.finish();
-            if (problem) return problem;
-        }
+    const LoopsOptions& options() const { return options_; }
+
+    /// Moves loops from `next` into entries of about a megabyte together, so that a day of many loops is never in
+    /// memory twice. False after the last loop.
+    template <class Next>
+    bool take(const Next& next, KnownLoops& known, std::vector<RawEntry>& entries) const {
+        constexpr std::size_t kPortion = std::size_t{1} << 20;
         TaggedLoop loop;
-        for (std::size_t bytes = 0; bytes < kPortion && (more_ = reader_.next(loop));
-             bytes += entries.back().text.size())
-            entries.push_back(entry_of(loop));
-        return std::nullopt;
+        for (std::size_t bytes = 0; bytes < kPortion; bytes += entries.back().text.size()) {
+            if (!next(loop)) return false;
+            entries.push_back(entry_of(loop, known.of(loop.tag)));
+        }
+        return true;
     }
-
-    bool more() const override { return more_; }
-    bool takes_options() const override { return true; }
 
 private:
-    static constexpr std::size_t kMaxRecordLine = std::size_t{1} << 20, kPortion = std::size_t{1} << 20;
-
-    static LoopsOptions options_of(const BatchQuestion& question) {
-        LoopsOptions options;
-        options.time_unit_given = question.time_unit.has_value();
-        if (question.time_unit) options.time_unit = *question.time_unit;
-        if (!question.name.empty()) options.name = question.name;
-        return options;
-    }
-
-    RawEntry entry_of(const TaggedLoop& loop) const {
+    RawEntry entry_of(const TaggedLoop& loop, const KnownLoop* known) const {
         RawEntry entry{0, {}, {}, loop.tag};
         if (loop.fault) {
             entry.fault = Problem{422, "invalid-request", "The loop cannot be read", *loop.fault, {}, {}};
             return entry;
         }
-        entry.text = loop_request(loop, options_.time_unit, options_.time_unit_given);
+        entry.text = loop_request(loop, terms_, known != nullptr ? known->members : Json::object());
         if (entry.text.size() > longest_entry_) {
             entry.fault = too_long(entry.text.size(), longest_entry_);
             entry.fault->detail += " Send a shorter time, or export fewer rows.";
@@ -183,22 +173,120 @@ private:
         return entry;
     }
 
-    Lines::Take taker(std::optional<Problem>& problem) {
-        return [&](long number, std::string_view text, std::size_t bytes) {
-            if (bytes > kMaxRecordLine)
-                problem =
-                    unreadable_loops("Line " + std::to_string(number) + " has more than 1 MiB. Send the file in " +
-                                     "parts, with fewer loops in each.");
-            else
-                problem = reader_.line(static_cast<int>(number), text);
-            return !problem;
-        };
+    LoopsOptions options_;
+    CheckTerms terms_;
+    std::size_t longest_entry_;
+};
+
+/// Cuts records of many loops into a request for each. All of them come at the end, in portions.
+class BatchReader::RecordedLoopsCutter : public Cutter {
+public:
+    explicit RecordedLoopsCutter(const BatchQuestion& question) : made_(question), file_(made_.options()) {}
+
+    std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>&) override { return file_.feed(bytes); }
+
+    std::optional<Problem> finish(std::vector<RawEntry>& entries) override {
+        if (!std::exchange(ended_, true))
+            if (auto problem = file_.finish()) return problem;
+        more_ = made_.take([&](TaggedLoop& loop) { return file_.loops().next(loop); }, nothing_known_, entries);
+        return std::nullopt;
     }
 
-    LoopsOptions options_;
-    std::size_t longest_entry_;
-    LoopsReader reader_;
-    Lines lines_;
+    bool more() const override { return more_; }
+    bool takes_options() const override { return true; }
+    std::vector<std::string> notes() const override { return file_.notes(); }
+
+private:
+    LoopEntries made_;
+    RecordedFile file_;
+    KnownLoops nothing_known_;
+    bool ended_ = false, more_ = false;
+};
+
+/// The same for several files in the parts of a form, and a table with what is known of their loops.
+class BatchReader::RecordedFilesCutter : public Cutter {
+public:
+    explicit RecordedFilesCutter(const BatchQuestion& question)
+        : made_(question),
+          joined_(seconds_per(made_.options().time_unit).value_or(0)),
+          parts_(question.boundary,
+                 {[this](const std::string& name, const std::string& file) { return begin(name, file); },
+                  [this](std::string_view bytes) { return part(bytes); }, [this] { return end(); }}) {}
+
+    std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>&) override { return parts_.feed(bytes); }
+
+    std::optional<Problem> finish(std::vector<RawEntry>& entries) override {
+        if (!std::exchange(ended_, true)) {
+            if (auto problem = parts_.finish()) return problem;
+            if (auto problem = joined_.finish()) return problem;
+        }
+        more_ = made_.take([&](TaggedLoop& loop) { return joined_.next(loop); }, known_, entries);
+        return std::nullopt;
+    }
+
+    bool more() const override { return more_; }
+    bool takes_options() const override { return true; }
+    std::vector<std::string> notes() const override {
+        std::vector<std::string> out = joined_.notes();
+        if (std::string unused = known_.unused_note(); !unused.empty()) out.push_back(std::move(unused));
+        return out;
+    }
+
+private:
+    static constexpr std::size_t kMaxTable = std::size_t{16} << 20;
+
+    std::optional<Problem> begin(const std::string& name, const std::string& file) {
+        if (name == "file") {
+            LoopsOptions options = made_.options();
+            options.max_numbers -= std::min(options.max_numbers, joined_.numbers());
+            if (!file.empty()) options.set_file(file);
+            name_ = file.empty() ? "the file" : file;
+            file_.emplace(std::move(options));
+        } else if (name != "loops") {
+            return not_valid("/" + pointer_segment(name),
+                             "The form has a part " + name +
+                                 "; its parts must be file, as often as there are files, and "
+                                 "loops, a table with what is known of the loops.");
+        } else if (has_table_) {
+            return not_valid("/loops", "The form has the part loops twice. Join the two tables.");
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Problem> part(std::string_view bytes) {
+        if (!file_) {
+            if (table_.size() + bytes.size() > kMaxTable)
+                return not_valid("/loops", "The table of loops has more than 16 MiB.");
+            table_.append(bytes);
+        } else if (!unreadable_) {
+            unreadable_ = file_->feed(bytes);
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Problem> end() {
+        if (!file_) {
+            has_table_ = true;
+            auto known = KnownLoops::read(std::exchange(table_, {}), made_.options().time_unit);
+            if (auto* problem = std::get_if<Problem>(&known)) return std::move(*problem);
+            known_ = std::get<KnownLoops>(std::move(known));
+            return std::nullopt;
+        }
+        if (!unreadable_) unreadable_ = file_->finish();
+        unreadable_ ? joined_.add_unreadable(name_, *std::exchange(unreadable_, {}))
+                    : joined_.add(name_, file_->loops());
+        file_.reset();
+        return std::nullopt;
+    }
+
+    LoopEntries made_;
+    JoinedLoops joined_;
+    Multipart parts_;
+    std::string name_, table_;          ///< of the present part
+    std::optional<RecordedFile> file_;  ///< the present part, if it is a file
+    std::optional<Problem> unreadable_;
+    bool has_table_ = false;
+    KnownLoops known_;
     bool ended_ = false, more_ = false;
 };
 
@@ -235,6 +323,7 @@ public:
     bool more() const override { return chosen_ && chosen_->more(); }
     std::string name() const override { return chosen_ ? chosen_->name() : std::string(); }
     std::string notify() const override { return chosen_ ? chosen_->notify() : std::string(); }
+    std::vector<std::string> notes() const override { return chosen_ ? chosen_->notes() : std::vector<std::string>(); }
     bool takes_options() const override { return !chosen_ || chosen_->takes_options(); }
 
 private:
@@ -281,6 +370,8 @@ BatchReader::BatchReader(BatchQuestion question) : question_(std::move(question)
         cutter_ = std::make_unique<JsonCutter>(question_.longest_entry);
     else if (*question_.form == BatchForm::ndjson)
         cutter_ = std::make_unique<NdjsonCutter>(question_.longest_entry);
+    else if (*question_.form == BatchForm::files)
+        cutter_ = std::make_unique<RecordedFilesCutter>(question_);
     else
         cutter_ = csv_cutter(question_);
 }
@@ -303,6 +394,8 @@ std::optional<Problem> BatchReader::finish(std::vector<BatchEntry>& entries) {
 
 bool BatchReader::more() const { return cutter_->more(); }
 
+std::vector<std::string> BatchReader::notes() const { return cutter_->notes(); }
+
 // Reports the first fault, however the bytes were cut.
 std::optional<Problem> BatchReader::judge(std::optional<Problem> found, std::vector<RawEntry> raw,
                                           std::vector<BatchEntry>& entries) {
@@ -315,7 +408,10 @@ std::optional<Problem> BatchReader::judge(std::optional<Problem> found, std::vec
 std::optional<Problem> BatchReader::refuse_options() const {
     if (cutter_->takes_options()) return std::nullopt;
     if (question_.time_unit)
-        return not_valid("/units.time", "units.time is a parameter for CSV; requests in JSON have their own units.");
+        return not_valid("/units.time",
+                         "units.time is a parameter for records; requests in JSON have their own units.");
+    if (question_.settings)
+        return not_valid("/settings", "settings is a parameter for records; requests in JSON have it as a member.");
     if (question_.options.empty()) return std::nullopt;
     const std::string& name = question_.options.front().first;
     return not_valid("/" + pointer_segment(name),

@@ -1,4 +1,4 @@
-// Reads the requests of a batch from its body while it arrives: JSON {"jobs": [...]}, NDJSON, a CSV of loops, or a file
+// Reads the requests of a batch from its body while it arrives: JSON {"jobs": [...]}, NDJSON, a CSV of loops, or files
 // of many recorded loops.
 #pragma once
 
@@ -15,7 +15,12 @@
 
 namespace tunewright::api {
 
-enum class BatchForm { json, ndjson, csv };
+enum class BatchForm {
+    json,
+    ndjson,
+    csv,
+    files,  ///< multipart/form-data with recorded loops: parts `file`, and `loops` (known_loops.h)
+};
 
 /// The meaning of a body in CSV.
 enum class BatchKind {
@@ -26,12 +31,14 @@ enum class BatchKind {
 /// Parameters of a call that posts a batch.
 struct BatchQuestion {
     std::optional<BatchForm> form;  ///< empty: the first bytes show it
+    std::string boundary = {};      ///< of the parts of BatchForm::files
     std::string name;               ///< of the batch; "" if none
     std::optional<Notify> notify;   ///< webhook that is notified of its end
     /// Returns a problem if the `notify` of the body is not allowed. Empty function: every one is allowed.
     std::function<std::optional<Problem>(const Notify& notify)> judge_notify = {};
     BatchKind kind = BatchKind::tune;
     std::optional<std::string> time_unit = {};  ///< of a check's answers, and of times in CSV whose unit is not stated
+    bool settings = false;                      ///< of a check of recorded loops: look for new settings too
     LoopOptions options;                        ///< for a CSV of models; the other forms have none
     JobLimits limits;
     std::size_t longest_entry = std::size_t{8} << 20;
@@ -63,6 +70,8 @@ public:
     const std::string& name() const { return name_; }
     /// Webhook of the batch, from the call or from the part of the body read so far.
     const std::optional<Notify>& notify() const { return question_.notify; }
+    /// Findings about the files of recorded loops; after the last finish().
+    std::vector<std::string> notes() const;
     /// Entries so far.
     std::size_t count() const { return count_; }
 
@@ -71,7 +80,9 @@ private:
     class JsonCutter;
     class NdjsonCutter;
     class LoopsCutter;
+    class LoopEntries;
     class RecordedLoopsCutter;
+    class RecordedFilesCutter;
     class Finder;
 
     static std::unique_ptr<Cutter> csv_cutter(const BatchQuestion& question);

@@ -38,6 +38,36 @@ constexpr std::array kFigures = {
     Column{"settling_time", "/performance/setpoint/settling_time"},
 };
 
+/// Columns of a check: texts and numbers of a loop.
+constexpr std::array kLoopFigures = {
+    Column{"tag", "/tag"},
+    Column{"verdict", "/cause/verdict"},
+    Column{"confidence", "/cause/confidence"},
+    Column{"period", "/oscillation/period"},
+    Column{"regularity", "/oscillation/regularity"},
+    Column{"size", "/cause/size"},
+    Column{"automatic", "/service/automatic"},
+    Column{"manual", "/service/manual"},
+    Column{"saturated_low", "/service/saturated_low"},
+    Column{"saturated_high", "/service/saturated_high"},
+    Column{"output_still", "/service/output_still"},
+    Column{"measurement_still", "/service/measurement_still"},
+    Column{"harris_low", "/performance/harris/low"},
+    Column{"harris_high", "/performance/harris/high"},
+    Column{"idle_index", "/performance/idle_index"},
+    Column{"variability", "/performance/variability"},
+    Column{"mean_error", "/performance/mean_error"},
+    Column{"travel", "/performance/travel"},
+    Column{"reversals", "/performance/reversals"},
+};
+
+/// Those of its place in the work list.
+constexpr std::array kRankFigures = {
+    Column{"gain", "/gain"},
+    Column{"share", "/share"},
+    Column{"money", "/money"},
+};
+
 /// A stored text as a tree. The results of a batch are hundreds of megabytes, and a line of CSV needs only a few of
 /// their numbers, so this reader must be fast.
 using Value = rapidjson::Value;
@@ -171,6 +201,52 @@ void add_line(const ResultRow& row, const Value& result, const Value& entry, con
     out.end_line();
 }
 
+/// `loop` and `rank`: empty objects if there are none.
+void add_loop_line(const ResultRow& row, const Value& result, const Value& loop, const Value& rank, const Value& error,
+                   CsvWriter& out) {
+    out.integer(row.index).text(row.id).text(row.name).text(row.status);
+    for (const Column& column : kLoopFigures) {
+        const Value* value = at(loop, column.pointer);
+        value != nullptr && value->IsString() ? add_text(loop, column.pointer, out) : add_number(value, out);
+    }
+    for (const Column& column : kRankFigures) add_number(at(rank, column.pointer), out);
+    add_text(loop, "/action/code", out);
+    add_text(loop, "/action/owner", out);
+    const Value* remarks = at(loop, "/quality/remarks");
+    remarks != nullptr && remarks->IsArray() ? out.integer(remarks->Size()) : out.empty();
+    add_text(error, "/detail", out);
+    add_time_unit(result, out);
+    add_text(result, "/units/u", out);
+    add_text(result, "/units/y", out);
+    out.end_line();
+}
+
+/// The member of `ranking` about the loop at this place; null if there is none.
+const Value* rank_of(const Value& result, std::size_t place) {
+    const Value* ranking = at(result, "/ranking");
+    if (ranking == nullptr || !ranking->IsArray()) return nullptr;
+    for (const Value& rank : ranking->GetArray()) {
+        const Value* loop = member(rank, "loop");
+        if (loop != nullptr && loop->IsUint64() && loop->GetUint64() == place) return &rank;
+    }
+    return nullptr;
+}
+
+struct RowTrees {
+    rapidjson::Document result, error;
+
+    explicit RowTrees(const ResultRow& row) {
+        read(result, row.result);
+        read(error, row.error);
+    }
+
+private:
+    static void read(rapidjson::Document& tree, std::string_view text) {
+        if (!text.empty()) tree.Parse<rapidjson::kParseFullPrecisionFlag>(text.data(), text.size());
+        if (tree.HasParseError()) tree.SetNull();
+    }
+};
+
 }  // namespace
 
 void append_ndjson(const ResultRow& row, std::string& out) {
@@ -208,13 +284,8 @@ std::string csv_headings() {
 }
 
 void append_csv(const ResultRow& row, std::string& out) {
-    rapidjson::Document result, error;
-    const auto read = [](rapidjson::Document& tree, std::string_view text) {
-        if (!text.empty()) tree.Parse<rapidjson::kParseFullPrecisionFlag>(text.data(), text.size());
-        if (tree.HasParseError()) tree.SetNull();
-    };
-    read(result, row.result);
-    read(error, row.error);
+    const RowTrees trees(row);
+    const Value &result = trees.result, &error = trees.error;
     CsvWriter lines;
     const Value* entries = at(result, "/controllers");
     if (entries == nullptr || !entries->IsArray() || entries->Empty()) {
@@ -223,6 +294,33 @@ void append_csv(const ResultRow& row, std::string& out) {
         for (const Value& entry : entries->GetArray()) {
             const Value* own = member(entry, "error");
             add_line(row, result, entry, own != nullptr ? *own : error, lines);
+        }
+    }
+    out += lines.take();
+}
+
+std::string check_csv_headings() {
+    CsvWriter out;
+    for (const char* heading : {"index", "id", "name", "status"}) out.text(heading);
+    for (const Column& column : kLoopFigures) out.text(column.heading);
+    for (const Column& column : kRankFigures) out.text(column.heading);
+    for (const char* heading : {"action", "owner", "remarks", "error", "time_unit", "u_unit", "y_unit"})
+        out.text(heading);
+    out.end_line();
+    return out.take();
+}
+
+void append_check_csv(const ResultRow& row, std::string& out) {
+    const RowTrees trees(row);
+    const Value none(rapidjson::kObjectType);
+    const Value* loops = at(trees.result, "/loops");
+    CsvWriter lines;
+    if (loops == nullptr || !loops->IsArray() || loops->Empty()) {
+        add_loop_line(row, trees.result, none, none, trees.error, lines);
+    } else {
+        for (rapidjson::SizeType place = 0; place < loops->Size(); ++place) {
+            const Value* rank = rank_of(trees.result, place);
+            add_loop_line(row, trees.result, (*loops)[place], rank == nullptr ? none : *rank, trees.error, lines);
         }
     }
     out += lines.take();

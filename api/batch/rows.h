@@ -23,6 +23,14 @@ void append_ndjson(const ResultRow& row, std::string& out);
 /// and its figures, warnings and error.
 std::string csv_headings();
 
+/// The headings of the CSV of a batch of checks: index, id, name, status, the loop's verdict with its figures, the
+/// number of remarks on its record, and error.
+std::string check_csv_headings();
+
+/// One line for each loop of the result; one line if there is none, as in append_csv. The verdict is that of the loop
+/// by itself.
+void append_check_csv(const ResultRow& row, std::string& out);
+
 /// One line for each controller of the result; one line if there is none: an error, or a job that has not ended. A
 /// value that is missing, infinite or of another form is an empty cell; numbers are in full precision.
 void append_csv(const ResultRow& row, std::string& out);

@@ -518,6 +518,24 @@ std::optional<Warning> mode_warning(const ReadRecord& read) {
     return Warning{"unknown-mode", read.unknown_mode};
 }
 
+namespace {
+
+std::string dropped_sentence(const ReadRecord& read) {
+    return std::to_string(read.dropped) +
+           " line(s) of the csv that cannot be read, or without a time, or with neither u nor y, were left out.";
+}
+
+}  // namespace
+
+std::vector<std::string> reading_sentences(const ReadRecord& read) {
+    std::vector<std::string> out = read.notes;
+    if (!read.unread.empty()) out.push_back(read.unread);
+    if (!read.unread_column.empty()) out.push_back(read.unread_column);
+    if (const auto warning = mode_warning(read)) out.push_back(warning->detail);
+    if (read.dropped > 0) out.push_back(dropped_sentence(read));
+    return out;
+}
+
 void add_reading(const ReadRecord& read, IdentifiedModel& model) {
     DataQuality& quality = model.data_quality;
     quality.time_unit_assumed = !read.time_unit_known;
@@ -527,10 +545,7 @@ void add_reading(const ReadRecord& read, IdentifiedModel& model) {
     if (auto warning = mode_warning(read)) model.warnings.push_back(*std::move(warning));
     quality.samples_dropped += read.dropped;
     quality.notes.insert(quality.notes.begin(), read.notes.begin(), read.notes.end());
-    if (read.dropped > 0)
-        quality.notes.push_back(std::to_string(read.dropped) +
-                                " line(s) of the csv that cannot be read, or without a time, or with neither u nor y, "
-                                "were left out.");
+    if (read.dropped > 0) quality.notes.push_back(dropped_sentence(read));
 }
 
 void leave_out_traces(const IdentifyQuestion& question, IdentifiedModel& model) {

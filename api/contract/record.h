@@ -76,6 +76,9 @@ void check_disturbances(const Record& record, bool from_csv, Reader& reader);
 /// The warning unknown-mode, if there are unknown modes.
 std::optional<Warning> mode_warning(const ReadRecord& read);
 
+/// The findings of reading the record, a sentence each.
+std::vector<std::string> reading_sentences(const ReadRecord& read);
+
 /// Adds the findings of reading the record to the model.
 void add_reading(const ReadRecord& read, IdentifiedModel& model);
 

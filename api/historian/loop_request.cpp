@@ -88,26 +88,34 @@ std::string iso_time(double seconds, bool utc) {
     return utc ? out + "Z" : out;
 }
 
-std::string loop_request(const TaggedLoop& loop, const std::string& time_unit, bool given) {
-    const auto seconds = seconds_per(time_unit);
+std::string loop_request(const TaggedLoop& loop, const CheckTerms& terms, const Json& known) {
+    const auto seconds = seconds_per(terms.time_unit);
     const bool dated = loop.epoch && seconds && !loop.t.empty();
     const double zero = dated ? loop.t.front() : 0;
     Writer out;
     out.begin_object();
     if (loop.tag.size() <= kMaxNameLength) out.key("name").text(loop.tag);
-    if (given) {
+    if (terms.unit_given) {
         out.key("units").begin_object();
-        out.key("time").text(time_unit);
+        out.key("time").text(terms.time_unit);
         out.end_object();
     }
+    if (terms.settings) out.key("settings").boolean(true);
     out.key("loops").begin_array();
     out.begin_object();
     out.key("tag").text(loop.tag);
-    if (const std::string_view kind = kind_of_tag(loop.tag).name; !kind.empty()) out.key("kind").text(kind);
+    const std::string_view kind = kind_of_tag(loop.tag).name;
+    if (!kind.empty() && !known.contains("kind")) out.key("kind").text(kind);
+    for (const auto& [member, value] : known.items()) out.key(member).raw(value.dump());
     out.key("csv").text(rows_text(loop, zero));
     write_columns(loop, out);
-    if (seconds) out.key("time_unit").text(time_unit);
+    if (seconds) out.key("time_unit").text(terms.time_unit);
     if (dated) out.key("start").text(iso_time(*loop.epoch + zero * *seconds, loop.utc));
+    if (const std::vector<std::string> notes = reading_notes(loop); !notes.empty()) {
+        out.key("notes").begin_array();
+        for (const std::string& note : notes) out.text(note);
+        out.end_array();
+    }
     out.end_object();
     out.end_array();
     out.end_object();

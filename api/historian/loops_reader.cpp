@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "api/csv/columns/column_profile.h"
+#include "api/historian/tags/loop_tags.h"
 #include "api/historian/tags/tag_lines.h"
 
 namespace tunewright::api {
@@ -37,7 +38,7 @@ std::optional<Problem> LoopsReader::line(int number, std::string_view text) {
 
 std::optional<Problem> LoopsReader::open() {
     CsvLayout layout = find_layout(head_, {});
-    begin_below_tag_headings(head_, layout);
+    begin_below_tag_headings(head_, options_.named_by_file && split_tag(options_.name).role, layout);
     auto table = open_table(head_, layout, options_, notes_);
     if (auto* problem = std::get_if<Problem>(&table)) return std::move(*problem);
     table_ = std::get<std::unique_ptr<LoopTable>>(std::move(table));

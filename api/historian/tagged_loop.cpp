@@ -64,6 +64,20 @@ void take_mode_words(const ModeTrack& track, const std::string& tag, TaggedLoop&
                              " whose meaning is not stated; it is not read. Name it such as \"Mode (0=MAN, 1=AUTO)\".");
 }
 
+std::vector<std::string> reading_notes(const TaggedLoop& loop) {
+    constexpr std::size_t kMaxNotes = 50;
+    std::vector<std::string> out = loop.notes;
+    if (loop.bad > 0)
+        out.insert(out.begin(), std::to_string(loop.bad) + (loop.bad == 1 ? " value" : " values") +
+                                    " of the measurement or the output " + (loop.bad == 1 ? "is" : "are") +
+                                    " of bad quality and count" + (loop.bad == 1 ? "s" : "") + " as missing.");
+    if (out.size() <= kMaxNotes) return out;
+    const std::size_t more = out.size() - kMaxNotes + 1;
+    out.resize(kMaxNotes - 1);
+    out.push_back(std::to_string(more) + " more findings are left out.");
+    return out;
+}
+
 void set_fault(TaggedLoop& loop, std::string sentence) {
     for (auto* column : {&loop.t, &loop.y, &loop.u, &loop.r}) *column = {};
     loop.mode = {};

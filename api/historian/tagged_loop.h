@@ -15,7 +15,7 @@ namespace tunewright::api {
 /// The rows of one loop, in the order of time, with at least one of y and u in each. The columns have equal lengths,
 /// or are empty if the file does not have them.
 struct TaggedLoop {
-    std::string tag;
+    std::string tag = {};
     std::vector<double> t;           ///< in the unit that was asked for; from the first row of the file if it has dates
     std::vector<double> y, u;        ///< NaN: missing, or of bad quality
     std::vector<double> r;           ///< set point, held from row to row; NaN before the first one
@@ -24,6 +24,7 @@ struct TaggedLoop {
     std::optional<double> epoch;          ///< seconds since 1970 at t = 0; empty: the file has no dates
     bool utc = false;                     ///< the file states the zone of its times
     int bad = 0;                          ///< values of y and u that the file marks as bad
+    bool only_tag = false;                ///< a part of a loop: `tag` is "FIC101.PV", with values in y or in mode
     std::vector<std::string> notes;       ///< findings, one sentence each
     std::optional<std::string> fault;     ///< the reason why the loop cannot be read; the columns are then empty
 };
@@ -49,6 +50,9 @@ void hold(std::vector<double>& r);
 /// Gives the loop the words of its modes. Codes without a meaning are not read: the column is then removed, and a note
 /// names `tag`.
 void take_mode_words(const ModeTrack& track, const std::string& tag, TaggedLoop& loop);
+
+/// The notes, with the number of values that the file marks as bad; of very many only the first.
+std::vector<std::string> reading_notes(const TaggedLoop& loop);
 
 /// Sets the fault and frees the columns.
 void set_fault(TaggedLoop& loop, std::string sentence);

@@ -48,11 +48,12 @@ Html work_list_of(const ReportInput& s) {
     if (money) heads.emplace_back("Money an hour");
     for (const std::size_t place : work_order(s.result.value())) {
         const JsonLocation loop = s.entry.at(place), cause = loop.at("cause"), rank = rank_of(s, place);
+        const ReportInput own = with_units(s, loop.at("units").value());
         rows.push_back({std::to_string(rows.size() + 1), text_at(loop.at("tag")),
                         verdict_title(text_at(cause.at("verdict"))), text_at(cause.at("confidence")),
                         action_title(text_at(loop.at("action").at("code"))),
                         owner_title(text_at(loop.at("action").at("owner"))), effort_title(rank.at("effort").value()),
-                        gain_of(s, rank), figure(rank.at("share"), 2)});
+                        gain_of(own, rank), figure(rank.at("share"), 2)});
         if (money) rows.back().push_back(figure(rank.at("money")));
     }
     Html out;
@@ -87,6 +88,13 @@ Html cascades_of(const ReportInput& s) {
         pairs.emplace_back(tag_of_loop(s.result.value(), pair.value("master", Json())) + " gives " +
                            tag_of_loop(s.result.value(), pair.value("slave", Json())) + " its set point.");
     return pairs.empty() ? Html() : section("Cascades", list(pairs));
+}
+
+Html notes_of_files(const ReportInput& s) {
+    std::vector<Html> notes;
+    for (const Json& note : s.result.at("notes").value())
+        if (note.is_string()) add_sentence(notes, note.get<std::string>());
+    return notes.empty() ? Html() : section("Files", list(notes));
 }
 
 /// Name and figure, for each member of `part` that has a value.
@@ -245,9 +253,20 @@ Html drawings_of(const ReportInput& s, const JsonLocation& loop) {
     return drawings.empty() ? Html() : section("Record", element("div", drawings, {{"class", "figures"}}));
 }
 
+/// Says that not every loop has a page.
+Html limit_of(const ReportInput& s, std::size_t pages) {
+    const std::size_t all = s.entry.value().size();
+    if (pages == all) return {};
+    return element("p", "The pages of " + std::to_string(pages) +
+                            " loops follow: the first with a cause in the order "
+                            "of the work list, which has all " +
+                            std::to_string(all) + " loops.");
+}
+
 /// The page of one loop.
-Html page_of_loop(const ReportInput& s, std::size_t place) {
-    const JsonLocation loop = s.entry.at(place), rank = rank_of(s, place);
+Html page_of_loop(const ReportInput& plant, std::size_t place) {
+    const JsonLocation loop = plant.entry.at(place), rank = rank_of(plant, place);
+    const ReportInput s = with_units(plant, loop.at("units").value());
     std::string source = tag_of_loop(s.result.value(), rank.at("after").value());
     if (!source.empty()) source = "Mend " + source + " first: it disturbs this loop.";
     const std::vector<Html> remarks = sentences_at(loop.at("quality").at("remarks"), "detail");
@@ -262,8 +281,10 @@ Html page_of_loop(const ReportInput& s, std::size_t place) {
 }  // namespace
 
 Html check_sections(const ReportInput& subject) {
-    Html out = work_list_of(subject) + groups_of(subject) + cascades_of(subject);
-    for (const std::size_t place : work_order(subject.result.value())) out += page_of_loop(subject, place);
+    Html out = work_list_of(subject) + groups_of(subject) + cascades_of(subject) + notes_of_files(subject);
+    const std::vector<std::size_t> places = loops_with_page(subject.result.value());
+    out += limit_of(subject, places.size());
+    for (const std::size_t place : places) out += page_of_loop(subject, place);
     return out;
 }
 

@@ -85,6 +85,18 @@ std::vector<std::size_t> work_order(const Json& result) {
     return order;
 }
 
+std::vector<std::size_t> loops_with_page(const Json& result) {
+    static constexpr std::array<std::string_view, 3> kNoCause = {"healthy", "undetermined", "insufficient-data"};
+    constexpr std::size_t kMaxPages = 50;
+    std::vector<std::size_t> order = work_order(result);
+    if (order.size() <= kMaxPages) return order;
+    std::erase_if(order, [&](std::size_t loop) {
+        return std::ranges::find(kNoCause, verdict_of(result["loops"][loop])) != kNoCause.end();
+    });
+    order.resize(std::min(order.size(), kMaxPages));
+    return order;
+}
+
 std::string check_summary(const Json& result) {
     const Json& loops = result.at("loops");
     std::vector<std::pair<std::string, int>> causes;

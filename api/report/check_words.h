@@ -27,6 +27,10 @@ std::string check_summary(const Json& result);
 /// Indices into `loops` in the order of the ranking; loops that it leaves out come last.
 std::vector<std::size_t> work_order(const Json& result);
 
+/// Loops with a page of their own in a report, in the order of the work list: all if they are at most 50, else the
+/// first 50 with a cause.
+std::vector<std::size_t> loops_with_page(const Json& result);
+
 /// The tag of loop number `loop`, a number in the JSON; "" if there is none.
 std::string tag_of_loop(const Json& result, const Json& loop);
 

@@ -1,5 +1,7 @@
 #include "api/report/report.h"
 
+#include <algorithm>
+
 #include "api/json/digest.h"
 #include "api/report/check_words.h"
 #include "api/report/figures.h"
@@ -35,6 +37,20 @@ std::string check_report(ChosenEntry& found, const ReportWords& words) {
                            request_section(document.at("request"), said.origin));
 }
 
+/// Entries without an answer, with their reasons.
+Html failed_section(const std::vector<std::pair<std::string, std::string>>& failed) {
+    constexpr std::size_t kMaxNamed = 100;
+    if (failed.empty()) return {};
+    std::vector<Html> items;
+    for (std::size_t i = 0; i < std::min(failed.size(), kMaxNamed); ++i) {
+        const auto& [name, reason] = failed[i];
+        items.emplace_back((name.empty() ? "Without a name" : name) + ": " +
+                           (reason.empty() ? "It has no result." : reason));
+    }
+    if (failed.size() > kMaxNamed) items.emplace_back(std::to_string(failed.size() - kMaxNamed) + " more.");
+    return section("Not checked", list(items));
+}
+
 std::string full_report(const ReportInput& subject, const ReportWords& said) {
     const std::string title = report_title(subject, said);
     return page(title, head_of(subject, said, title, about_of(subject)) + verdict_section(subject) +
@@ -56,6 +72,32 @@ std::variant<std::string, Problem> report_html(const ResultSource& source, std::
     return about_entry(found, index, words, full_report);
 } catch (const Json::exception&) {  // a file that only resembles a result: its members have other types
     return not_a_result();
+}
+
+BatchReport::BatchReport(std::string_view check) { document_["result"] = Json::parse(check); }
+
+std::vector<std::size_t> BatchReport::pages() const { return loops_with_page(document_["result"]); }
+
+void BatchReport::add_drawings(std::size_t place, std::string_view result, std::size_t within) {
+    const Json parsed = Json::parse(result, nullptr, false);
+    const Json* loops = parsed.is_object() && parsed.contains("loops") ? &parsed["loops"] : nullptr;
+    if (loops == nullptr || within >= loops->size()) return;
+    for (const char* part : {"trend", "excerpt", "spectrum"})
+        document_["result"]["loops"][place][part] = (*loops)[within].value(part, Json());
+}
+
+void BatchReport::add_failed(std::string name, std::string reason) {
+    failed_.emplace_back(std::move(name), std::move(reason));
+}
+
+std::string BatchReport::html(const std::string& name, const ReportWords& words) const {
+    const ReportInput subject = subject_of_check(document_);
+    const Json& result = document_["result"];
+    const std::string title = name.empty() ? "Loop check" : name + ": loop check";
+    Html out = head_of(subject, words, title, check_summary(result));
+    if (!result.value("complete", true))
+        out += element("p", element("strong", "The batch has not ended; loops that are not checked yet are missing."));
+    return page(title, out + failed_section(failed_) + check_sections(subject));
 }
 
 std::string report_policy() {

@@ -87,6 +87,15 @@ ReportInput subject_of_range(const Json& document) { return subject_at(document,
 
 ReportInput subject_of_check(const Json& document) { return subject_at(document, "loops"); }
 
+ReportInput with_units(const ReportInput& subject, const Json& units) {
+    ReportInput out = subject;
+    if (!units.is_object()) return out;
+    out.time = label(units, "time", "s");
+    out.u = label(units, "u", "");
+    out.y = label(units, "y", "");
+    return out;
+}
+
 std::size_t best_proposal(const ChosenEntry& found) {
     const Json& controllers = found.result.at("controllers");
     const Json ranking = found.result.value("ranking", Json::array());

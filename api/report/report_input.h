@@ -48,6 +48,9 @@ ReportInput subject_of_range(const Json& document);
 /// The subject for the document's check: its entry is the list of loops.
 ReportInput subject_of_check(const Json& document);
 
+/// The same with the labels of these units, if they are an object.
+ReportInput with_units(const ReportInput& subject, const Json& units);
+
 /// The first of the ranking that is not today's; today's if it is the only one.
 std::size_t best_proposal(const ChosenEntry& found);
 

@@ -336,7 +336,10 @@ std::string percent_text(const Json& share) {
 }
 
 std::string unit_of(const Json& answer, const char* name, const char* fallback) {
-    const std::string unit = word_at(answer.value("units", Json::object()), name);
+    Json units = answer.value("units", Json::object());
+    // The loops of a batch have their own.
+    if (units.empty() && !answer.at("loops").empty()) units = member_of(answer.at("loops").front(), "units");
+    const std::string unit = words(member_of(units, name));
     return unit.empty() ? fallback : unit;
 }
 
@@ -369,6 +372,12 @@ std::string groups_of(const Json& answer) {
     return out.empty() ? "" : "\n" + out;
 }
 
+std::string notes_of(const Json& answer) {
+    std::string out;
+    for (const Json& note : answer.value("notes", Json::array())) out += "Note: " + words(note) + "\n";
+    return out.empty() ? "" : "\n" + out;
+}
+
 /// The strongest evidence of the first loops that need work, and what to do.
 std::string reasons_of(const Json& answer, const std::vector<std::size_t>& order) {
     std::string out;
@@ -398,8 +407,8 @@ std::string check_text(std::string_view answer) try {
     const Json value = parsed_or_null(answer);
     if (!is_of_check(value)) return std::string(answer) + "\n";
     const std::vector<std::size_t> order = work_order(value);
-    std::string out =
-        check_summary(value) + "\n\n" + work_list(value, order) + groups_of(value) + reasons_of(value, order);
+    std::string out = check_summary(value) + "\n\n" + work_list(value, order) + groups_of(value) +
+                      reasons_of(value, order) + notes_of(value);
     if (value.value("partial", false)) out += "\nThe check was stopped before all loops were checked.\n";
     return out;
 } catch (const Json::exception&) {

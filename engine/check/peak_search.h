@@ -52,7 +52,7 @@ private:
     double step_of_power() const { return 1 / static_cast<double>(2 * (power_.size() - 1)); }
 
     std::vector<double> series_, window_;  ///< about its mean; the window of Hann
-    std::vector<double> power_;            ///< of the windowed series, at twice as many frequencies as it has of its own
+    std::vector<double> power_;  ///< of the windowed series, at twice as many frequencies as it has of its own
     std::vector<std::complex<double>> X_;  ///< of the series, padded to length_
     std::size_t length_ = 0;
     double slowest_ = 0, total_ = 0, all_ = 0;  ///< lowest frequency that is looked for; power from there on; all power

@@ -38,7 +38,7 @@ struct Samples {
     std::vector<double> error() const;
 };
 
-inline constexpr int kLongestGap = 20;                    ///< steps
+inline constexpr int kLongestGap = 20;                  ///< steps
 inline constexpr std::size_t kMostSamples = 2'000'000;  ///< a longer record has longer steps
 
 Samples even_samples(const Rows& rows);

@@ -2,19 +2,19 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "api/batch/pieces.h"
+#include "api/batch/known_loops.h"
+#include "api/batch/recorded_file.h"
 #include "api/check_service.h"
-#include "api/csv/cell.h"
 #include "api/csv/time_stamp.h"
 #include "api/historian/joined_loops.h"
 #include "api/report/terminal.h"
@@ -36,6 +36,7 @@ constexpr std::string_view kStandardInput = "-";
 
 struct CheckCommand {
     std::vector<std::string> files;  ///< files and folders; "-": standard input
+    std::string loops;               ///< a table with what is known of the loops; "": none
     std::string time_unit;           ///< of the files' times; "": the files' own
     std::string answer_unit;         ///< "": s
     bool settings = false;           ///< look for new settings where tuning is the cause
@@ -62,11 +63,9 @@ private:
 
 /// The files of a folder that may hold records, in the order of their names.
 std::vector<std::string> files_of_folder(const std::string& folder) {
-    static constexpr std::array<std::string_view, 4> kEndings = {".csv", ".tsv", ".txt", ".dat"};
     std::vector<std::string> out;
     for (const auto& entry : fs::directory_iterator(folder)) {
-        const std::string ending = api::lower_case(entry.path().extension().string());
-        if (entry.is_regular_file() && std::ranges::find(kEndings, ending) != kEndings.end())
+        if (entry.is_regular_file() && api::is_ending_of_records(entry.path().extension().string()))
             out.push_back(entry.path().string());
     }
     std::ranges::sort(out);
@@ -137,59 +136,68 @@ public:
         auto files = all_files(command_.files);
         if (const auto* problem = std::get_if<api::Problem>(&files)) return write_problem(*problem, command_.output);
         const auto& names = std::get<std::vector<std::string>>(files);
+        if (auto problem = read_table()) return write_problem(*problem, command_.output, command_.loops);
         for (const std::string& name : names) {
             PieceReader pieces(name);
             if (!pieces.opened()) return write_problem(unreadable(name), command_.output);
             if (pieces.first() == '{') return names.size() == 1 ? check_requests(name, pieces) : refuse_mixture(name);
-            if (auto problem = read(name, pieces, names.size() == 1))
-                return write_problem(*problem, command_.output, name);
+            read(name, pieces);
             if (interrupt_.stopped()) return stopped_while_reading();
         }
-        api::RecordedLoops recorded;
-        recorded.loops = loops_.take();
-        if (!command_.answer_unit.empty()) recorded.time_unit = command_.answer_unit;
-        recorded.settings = command_.settings;
-        return answer(
-            check([&](const RunControl& control) { return api::check_recorded(std::move(recorded), control); }), "");
+        if (const auto problem = loops_.finish())
+            return write_problem(*problem, command_.output, names.size() == 1 ? names.front() : "");
+        return answer(check([&](const RunControl& control) { return api::check_recorded(recorded(), control); }), "");
     }
 
 private:
-    /// Reads the loops of a file. A problem is returned only if the file is `alone`; otherwise it is the answer about
-    /// this file.
-    std::optional<api::Problem> read(const std::string& name, PieceReader& pieces, bool alone) {
-        status_.show("Reading " + name);
-        api::LoopsReader reader(options_for(name));
-        std::optional<api::Problem> problem;
-        constexpr std::size_t kMaxLine = std::size_t{1} << 20;
-        const auto take = [&](long number, std::string_view text, std::size_t bytes) {
-            problem =
-                bytes > kMaxLine
-                    ? std::optional(api::unreadable_loops("Line " + std::to_string(number) + " has more than 1 MiB."))
-                    : reader.line(static_cast<int>(number), text);
-            return !problem;
-        };
-        api::Lines lines(api::Lines::Ends::any, kMaxLine);
-        for (std::string_view piece = pieces.next(); !piece.empty() && !problem; piece = pieces.next()) {
-            if (interrupt_.stopped()) return std::nullopt;
-            lines.feed(piece, take);
-        }
-        if (!problem) lines.finish(take);
-        if (!problem) problem = reader.finish();
-        status_.clear();
-        if (problem && alone) return problem;
-        if (problem) return loops_.add_unreadable(name, problem->detail), std::nullopt;
-        loops_.add(name, reader);
-        for (const std::string& note : reader.notes())
-            if (wants_table(command_.output)) std::cerr << name << ": " << note << "\n";
+    std::optional<api::Problem> read_table() {
+        if (command_.loops.empty()) return std::nullopt;
+        PieceReader pieces(command_.loops);
+        if (!pieces.opened()) return unreadable(command_.loops);
+        std::string text;
+        for (std::string_view piece = pieces.next(); !piece.empty(); piece = pieces.next()) text += piece;
+        auto known = api::KnownLoops::read(text, answer_unit());
+        if (auto* problem = std::get_if<api::Problem>(&known)) return std::move(*problem);
+        known_ = std::get<api::KnownLoops>(std::move(known));
         return std::nullopt;
     }
+
+    void read(const std::string& name, PieceReader& pieces) {
+        status_.show("Reading " + name);
+        api::RecordedFile file(options_for(name));
+        std::optional<api::Problem> problem;
+        for (std::string_view piece = pieces.next(); !piece.empty() && !problem; piece = pieces.next()) {
+            if (interrupt_.stopped()) return;
+            problem = file.feed(piece);
+        }
+        if (!problem) problem = file.finish();
+        status_.clear();
+        problem ? loops_.add_unreadable(name, *std::move(problem)) : loops_.add(name, file.loops());
+    }
+
+    /// All loops that were read, with what is known of them.
+    api::RecordedLoops recorded() {
+        api::RecordedLoops out;
+        for (api::TaggedLoop loop; loops_.next(loop);) {
+            const api::KnownLoop* known = known_.of(loop.tag);
+            out.facts.push_back(known != nullptr ? known->facts : api::LoopFacts{});
+            out.loops.push_back(std::move(loop));
+        }
+        out.notes = loops_.notes();
+        if (std::string unused = known_.unused_note(); !unused.empty()) out.notes.push_back(std::move(unused));
+        if (!command_.answer_unit.empty()) out.time_unit = command_.answer_unit;
+        out.settings = command_.settings;
+        return out;
+    }
+
+    std::string answer_unit() const { return command_.answer_unit.empty() ? "s" : command_.answer_unit; }
 
     api::LoopsOptions options_for(const std::string& name) const {
         api::LoopsOptions options;
         options.time_unit_given = !command_.answer_unit.empty();
-        if (options.time_unit_given) options.time_unit = command_.answer_unit;
+        options.time_unit = answer_unit();
         options.file_time_unit = command_.time_unit;
-        if (name != kStandardInput) options.name = fs::path(name).stem().string();
+        if (name != kStandardInput) options.set_file(name);
         options.max_numbers -= std::min(options.max_numbers, loops_.numbers());
         return options;
     }
@@ -209,6 +217,10 @@ private:
     }
 
     int check_requests(const std::string& name, PieceReader& pieces) {
+        if (!command_.loops.empty())
+            return write_problem(
+                http::problem(422, "--loops is for files of records; a request has these members in its loops."),
+                command_.output, name);
         std::string text;
         for (std::string_view piece = pieces.next(); !piece.empty(); piece = pieces.next()) text += piece;
         const auto request = api::joined_requests(text);
@@ -252,7 +264,8 @@ private:
     const CheckCommand& command_;
     Interrupt interrupt_;
     StatusLine status_;
-    api::JoinedLoops loops_{api::seconds_per(command_.answer_unit.empty() ? "s" : command_.answer_unit).value_or(0)};
+    api::JoinedLoops loops_{api::seconds_per(answer_unit()).value_or(0)};
+    api::KnownLoops known_;
 };
 
 }  // namespace
@@ -265,6 +278,10 @@ void add_check_command(CommandTree& tree) {
                    "Records of many loops or of one as CSV, folders of such files, or a request with loops as JSON; - "
                    "reads standard input")
         ->required();
+    app.add_option("--loops", checking.loops,
+                   "CSV with what is known of the loops: tag and any of kind, averaging, pv_low, pv_high, op_low, "
+                   "op_high, weight, Kp, Ti, Td")
+        ->type_name("FILE");
     app.add_option("--time-unit", checking.time_unit,
                    "Unit of the times of the files, if they give none or a wrong one")
         ->type_name("UNIT");

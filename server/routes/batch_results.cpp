@@ -23,7 +23,8 @@ public:
         : question_(std::move(question)), batches_(batches), jobs_(jobs), out_(out), next_(question_.from) {}
 
     bool send(Executor& lane) {
-        if (question_.csv && !out_.write(api::csv_headings())) return false;
+        if (question_.csv && !out_.write(question_.of_checks ? api::check_csv_headings() : api::csv_headings()))
+            return false;
         for (;;) {
             std::string text;
             Next next = Next::broken;
@@ -99,7 +100,10 @@ private:
 
     void append(const BatchRow& row, std::string& out) const {
         const api::ResultRow shown{row.index, row.id, row.name, to_string(row.status), row.result, row.error};
-        question_.csv ? api::append_csv(shown, out) : api::append_ndjson(shown, out);
+        if (!question_.csv)
+            api::append_ndjson(shown, out);
+        else
+            question_.of_checks ? api::append_check_csv(shown, out) : api::append_csv(shown, out);
     }
 
     const ResultsQuestion question_;

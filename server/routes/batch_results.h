@@ -13,6 +13,7 @@ namespace tunewright::server {
 struct ResultsQuestion {
     std::string batch;                    ///< its id; the caller has checked that it exists and is visible
     bool csv = false;                     ///< one line for each controller; else NDJSON, one line for each job
+    bool of_checks = false;               ///< with csv: one line for each loop that was checked
     bool follow = false;                  ///< each row is sent when its job has ended; the answer ends after the last
                                           ///< row
     std::int64_t from = 0;                ///< index of the first row

@@ -3,13 +3,17 @@
 #include <optional>
 #include <utility>
 #include <variant>
+#include <vector>
 
+#include "api/batch/multipart.h"
 #include "api/batch/plant_checks.h"
+#include "api/check_service.h"
 #include "api/json/json.h"
 #include "api/json/utf8.h"
 #include "server/http/app/negotiation.h"
 #include "server/http/app/problems.h"
 #include "server/jobs/await.h"
+#include "server/routes/batch_checks.h"
 #include "server/routes/batch_results.h"
 #include "server/routes/job_access.h"
 #include "server/routes/job_json.h"
@@ -35,9 +39,11 @@ Response about_batch(Batches& batches, const http::Request& request, const std::
     });
 }
 
-Response batch_response(Batches& batches, const http::Request& request, const std::string& id, int status) {
-    return about_batch(batches, request, id,
-                       [&](const BatchSummary& batch) { return http::json_response(batch_json(batch), status); });
+Response batch_response(Batches& batches, const http::Request& request, const std::string& id, int status,
+                        const std::vector<std::string>& notes = {}) {
+    return about_batch(batches, request, id, [&](const BatchSummary& batch) {
+        return http::json_response(batch_json(batch, notes), status);
+    });
 }
 
 std::optional<Response> refuse_stranger(Batches& batches, const Call& call) {
@@ -49,7 +55,8 @@ std::optional<Response> refuse_stranger(Batches& batches, const Call& call) {
 // ---- POST /v1/batches ------------------------------------------------------------------------------------------
 
 /// The form according to the media type; empty without a refusal if the body's first bytes decide.
-std::optional<Response> read_form(const http::Request& request, std::optional<api::BatchForm>& form) {
+std::optional<Response> read_form(const http::Request& request, api::BatchQuestion& question) {
+    std::optional<api::BatchForm>& form = question.form;
     const std::string type = http::media_type(request);
     if (type.empty() || type == "application/x-www-form-urlencoded" || type == "application/octet-stream")
         return std::nullopt;
@@ -60,13 +67,25 @@ std::optional<Response> read_form(const http::Request& request, std::optional<ap
         form = api::BatchForm::ndjson;
     } else if (type == "text/csv" || type == "application/csv" || type == "text/tab-separated-values") {
         form = api::BatchForm::csv;
+    } else if (type == "multipart/form-data") {
+        form = api::BatchForm::files;
+        question.boundary = api::boundary_of(request.header("Content-Type"));
+        constexpr std::size_t kMaxBoundary = 70;
+        if (question.boundary.empty() || question.boundary.size() > kMaxBoundary)
+            return problem_response(400, "The Content-Type must name the boundary of the parts.");
     } else {
         return problem_response(
             415,
             "The body must be application/json ({\"jobs\": [...]}), application/x-ndjson (one "
-            "request per line) or text/csv (one loop per line, or recorded loops with kind=check).");
+            "request per line), text/csv (one loop per line, or recorded loops with kind=check) or, with kind=check, "
+            "multipart/form-data (files of recorded loops).");
     }
     return std::nullopt;
+}
+
+bool holds_records(const api::BatchQuestion& question) {
+    const api::BatchForm form = question.form.value_or(api::BatchForm::csv);
+    return question.kind == api::BatchKind::check && (form == api::BatchForm::csv || form == api::BatchForm::files);
 }
 
 /// Reads and checks the notification in the parameters.
@@ -100,9 +119,13 @@ std::optional<Response> read_kind(const http::Request& request, api::BatchQuesti
             question.options.emplace_back(name, value);
         else if (name == "units.time")
             question.time_unit = value;
+        else if (name == "settings" && (value == "true" || value == "false"))
+            question.settings = value == "true";
+        else if (name == "settings")
+            refuse_parameter(problem, name, value, "it must be true or false.");
         else
             refuse_parameter(problem, name, value,
-                             "the only parameters of a check are kind, name, units.time, notify_url "
+                             "the only parameters of a check are kind, name, units.time, settings, notify_url "
                              "and notify_secret_id.");
     }
     if (!problem.errors.empty()) return http::problem_response(problem);
@@ -113,7 +136,7 @@ std::optional<Response> read_kind(const http::Request& request, api::BatchQuesti
 std::optional<Response> read_order(const http::Request& request, NotifyPolicy& policy, const BatchLimits& limits,
                                    BatchOrder& order) {
     if (auto refusal = refuse_form(request)) return refusal;
-    if (auto refusal = read_form(request, order.question.form)) return refusal;
+    if (auto refusal = read_form(request, order.question)) return refusal;
     order.idempotency_key = request.header("Idempotency-Key");
     if (auto refusal = refuse_key(order.idempotency_key)) return refusal;
     for (const auto& [name, value] : request.query) {
@@ -126,6 +149,8 @@ std::optional<Response> read_order(const http::Request& request, NotifyPolicy& p
             order.question.options.emplace_back(name, value);
     }
     if (auto refusal = read_kind(request, order.question)) return refusal;
+    if (order.question.form == api::BatchForm::files && !holds_records(order.question))
+        return problem_response(422, "multipart/form-data has files of recorded loops. Add kind=check to the address.");
     if (auto refusal = judge_notify(policy, request, order)) return refusal;
     if (order.question.name.size() > kMaxNameLength)
         return problem_response(
@@ -142,7 +167,7 @@ Response receipt_response(Batches& batches, const http::Request& request, const 
     switch (receipt.kind) {
         case BatchReceipt::Kind::created:
         case BatchReceipt::Kind::existing: {
-            Response response = batch_response(batches, request, receipt.id, 202);
+            Response response = batch_response(batches, request, receipt.id, 202, receipt.notes);
             if (response.status == 202) response.set("Location", "/v1/batches/" + receipt.id);
             return response;
         }
@@ -169,9 +194,7 @@ Response post_batch(Batches& batches, LongRequestSlots& places, LongRequestSlots
     const auto place = places.take(call.request.client);
     if (!place) return problem_response(503, "Too many batches are being received. Try again in a moment.");
     std::optional<LongRequestSlots::Slot> alone;
-    const bool columns = order.question.kind == api::BatchKind::check &&
-                         order.question.form.value_or(api::BatchForm::csv) == api::BatchForm::csv;
-    if (columns && !(alone = recorded.take(call.request.client)))
+    if (holds_records(order.question) && !(alone = recorded.take(call.request.client)))
         return problem_response(503, "Another file of recorded loops is being received. Try again in a moment.");
     return receipt_response(batches, call.request, batches.receive(std::move(order), call.request.read_body));
 }
@@ -240,6 +263,18 @@ std::optional<Response> read_results_question(const http::Request& request, Resu
     return std::nullopt;
 }
 
+/// True for a batch of checks, by the first of its requests that could be read.
+bool is_of_checks(Batches& batches, JobService& jobs, const std::string& id) {
+    constexpr std::int64_t kMaxLookedAt = 50;
+    for (std::int64_t index = 0; index < kMaxLookedAt; ++index) {
+        const std::vector<BatchRow> rows = batches.rows(id, index, 1);
+        const std::optional<JobView> view = rows.empty() ? std::nullopt : jobs.find(rows.front().id);
+        if (!view) return false;
+        if (!view->job.request.empty()) return api::is_check_text(view->job.request);
+    }
+    return false;
+}
+
 Response get_results(Batches& batches, JobService& jobs, LongRequestSlots& places, Executor& lane, const Call& call) {
     ResultsQuestion question;
     question.batch = call.path.at("id");
@@ -248,6 +283,7 @@ Response get_results(Batches& batches, JobService& jobs, LongRequestSlots& place
     if (auto refusal = refuse_stranger(batches, call)) return *std::move(refusal);
     Response response;
     if (question.csv) {
+        question.of_checks = is_of_checks(batches, jobs, question.batch);
         response.set("Content-Type", "text/csv; charset=utf-8; header=present");
         response.set("Content-Disposition", "attachment; filename=\"batch-" + question.batch + ".csv\"");
     } else {
@@ -259,21 +295,6 @@ Response get_results(Batches& batches, JobService& jobs, LongRequestSlots& place
         return send(out);
     };
     return response;
-}
-
-constexpr std::int64_t kMaxCheckedLoops = 5000;  // read into memory for their common judgement
-constexpr std::size_t kRowsAtOnce = 100;
-
-/// Adds the entries that have ended.
-void add_checks(Batches& batches, const std::string& id, api::PlantChecks& checks) {
-    for (std::int64_t next = 0;;) {
-        const std::vector<BatchRow> rows = batches.rows(id, next, kRowsAtOnce);
-        if (rows.empty()) return;
-        for (const BatchRow& row : rows) {
-            if (has_ended(row.status)) checks.add(row.index, row.id, row.result);
-            next = row.index + 1;
-        }
-    }
 }
 
 /// The batch that `before` names, or a refusal.
@@ -292,25 +313,16 @@ std::variant<std::optional<std::string>, Response> earlier_batch(const http::Req
 
 Response check_of_batch(Batches& batches, const Call& call, const std::optional<std::string>& before) {
     const std::string& id = call.path.at("id");
-    std::optional<api::PlantChecks> earlier;
-    for (const std::string& name : {before.value_or(id), id}) {
-        const std::optional<BatchSummary> batch = batches.find(name);
-        if (!batch || !may_see(call.request, *batch)) return no_such_batch(name);
-        if (static_cast<std::int64_t>(batch->total) > kMaxCheckedLoops)
-            return problem_response(
-                422, "The batch has " + std::to_string(batch->total) + " entries; loops are judged together up to " +
-                         std::to_string(kMaxCheckedLoops) + ". Check a part of the plant at a time.");
-        if (!before || name != *before) break;
-        add_checks(batches, name, earlier.emplace());
+    std::optional<BatchOfChecks> earlier;
+    if (before) {
+        auto read = read_checks(batches, call.request, *before);
+        if (auto* refusal = std::get_if<Response>(&read)) return std::move(*refusal);
+        earlier = std::get<BatchOfChecks>(std::move(read));
     }
-    api::PlantChecks checks;
-    const std::optional<BatchSummary> batch = batches.find(id);
-    if (!batch) return no_such_batch(id);
-    add_checks(batches, id, checks);
-    if (checks.loops() == 0 && batch->ended())
-        return problem_response(409,
-                                "The batch has no checked loop. It must be one of kind=check, or of check requests.");
-    return http::json_response(checks.answer(batch->ended(), earlier ? &*earlier : nullptr), 200);
+    auto read = read_checks(batches, call.request, id);
+    if (auto* refusal = std::get_if<Response>(&read)) return std::move(*refusal);
+    const auto& now = std::get<BatchOfChecks>(read);
+    return http::json_response(now.checks.answer(now.batch.ended(), earlier ? &earlier->checks : nullptr), 200);
 }
 
 Response get_check(Batches& batches, ComputeSlots& readers, const Call& call) {
@@ -361,8 +373,9 @@ void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, 
     router.add("GET", "/v1/batches", [&](const Call& call) { return list_batches(batches, listers, call); });
     router.add("GET", "/v1/batches/{id}", [&](const Call& call) { return get_batch(batches, call); });
     router.add("DELETE", "/v1/batches/{id}", [&](const Call& call) { return delete_batch(batches, call); });
-    router.add("GET", "/v1/batches/{id}/results",
-               [&](const Call& call) { return get_results(batches, jobs, places, lane, call); });
+    router.add("GET", "/v1/batches/{id}/results", [&](const Call& call) {
+        return guarded([&] { return get_results(batches, jobs, places, lane, call); });
+    });
     router.add("GET", "/v1/batches/{id}/check", [&](const Call& call) { return get_check(batches, listers, call); });
     router.add("POST", "/v1/batches/{id}/cancel", [&](const Call& call) { return cancel_batch(batches, call); });
 }

@@ -167,7 +167,9 @@ std::optional<std::int64_t> parse_cursor(const std::string& cursor) {
     return seq;
 }
 
-std::string batch_json(const BatchSummary& batch) {
+std::string batch_json(const BatchSummary& batch, const std::vector<std::string>& notes) {
+    std::string list;
+    for (const std::string& note : notes) list.append(list.empty() ? "[" : ",").append(json_string(note));
     JsonObject object;
     object.text("id", batch.id);
     batch.name.empty() ? object.null("name") : object.text("name", batch.name);
@@ -178,6 +180,7 @@ std::string batch_json(const BatchSummary& batch) {
         .boolean("cancel_requested", batch.cancel_requested)
         .text("created_at", iso_time(batch.created_at));
     batch.finished_at ? object.text("finished_at", iso_time(*batch.finished_at)) : object.null("finished_at");
+    if (!list.empty()) object.raw("notes", list + "]");
     return std::move(object.raw("links", links_of(batch))).str();
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/jobs/service.h"
 #include "server/store/store.h"
@@ -26,7 +27,8 @@ std::string job_progress_json(const JobView& view);
 /// owners.
 std::string job_page_json(const JobPage& page, const JobQuery& query, bool with_owners);
 
-std::string batch_json(const BatchSummary& batch);
+/// `notes`: findings about its files, which only the answer to the call that posted it has.
+std::string batch_json(const BatchSummary& batch, const std::vector<std::string>& notes = {});
 
 /// {"batches": [...], "next": "/v1/batches?..." or null}.
 std::string batch_page_json(const BatchPage& page, int limit);

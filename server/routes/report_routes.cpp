@@ -11,6 +11,7 @@
 #include "server/http/app/negotiation.h"
 #include "server/http/app/problems.h"
 #include "server/json_text.h"
+#include "server/routes/batch_checks.h"
 #include "server/routes/job_access.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
@@ -39,7 +40,7 @@ struct PageQuestion {
     std::optional<int> utc_offset_min;
 };
 
-/// Reads the parameters; `selects`: the one that a page has in addition to utc_offset, and its rule.
+/// Reads the parameters; `selects`: the one that a page has in addition to utc_offset, and its rule; null: none.
 std::optional<Response> read_question(const http::Request& request, const char* name_of_page, const char* selects,
                                       PageQuestion& question) {
     api::Problem problem = bad_parameters(name_of_page);
@@ -47,6 +48,8 @@ std::optional<Response> read_question(const http::Request& request, const char* 
         if (name == "utc_offset") {
             if (!read_whole(value, -api::kMaxUtcOffset, api::kMaxUtcOffset, question.utc_offset_min.emplace()))
                 refuse_parameter(problem, name, value, "it must be minutes ahead of UTC, a whole number up to 840.");
+        } else if (selects == nullptr) {
+            refuse_parameter(problem, name, value, "the only parameter is utc_offset.");
         } else if (name != selects) {
             refuse_parameter(problem, name, value,
                              std::string("the only parameters are ") + selects + " and utc_offset.");
@@ -158,6 +161,39 @@ Response get_batch_page(Batches& batches, JobService& jobs, ComputeSlots& reader
     return in_turn(readers, call.request, [&] { return batch_page(batches, jobs, call, question); });
 }
 
+/// Words for the report of a batch, in which the batch stands in the place of the job.
+api::ReportWords batch_words(const BatchSummary& batch, const Call& call, const PageQuestion& question) {
+    return {.job = "",
+            .name = batch.name,
+            .date = iso_time(batch.finished_at.value_or(batch.created_at)),
+            .origin = origin_of(call.request),
+            .utc_offset_min = question.utc_offset_min};
+}
+
+/// Only the loops with a page of their own are read a second time, for their drawings.
+Response report_of_batch(Batches& batches, const Call& call, const PageQuestion& question) {
+    const std::string& id = call.path.at("id");
+    auto read = read_checks(batches, call.request, id, api::PlantChecks::Kept::none);
+    if (auto* refusal = std::get_if<Response>(&read)) return std::move(*refusal);
+    const auto& [batch, checks] = std::get<BatchOfChecks>(read);
+    api::BatchReport report(checks.answer(batch.ended(), nullptr));
+    for (const std::size_t loop : report.pages()) {
+        const api::PlantChecks::Source& source = checks.source(loop);
+        const std::vector<BatchRow> rows = batches.rows(id, source.index, 1);
+        if (rows.empty() || rows.front().index != source.index) return no_such_batch(id);
+        report.add_drawings(loop, rows.front().result, source.place);
+    }
+    for (const auto& [name, reason] : checks.failed()) report.add_failed(name, reason);
+    return html_response(report.html(batch.name, batch_words(batch, call, question)));
+}
+
+Response get_batch_report(Batches& batches, ComputeSlots& readers, const Call& call) {
+    if (!http::accepts(call.request, "text/html")) return problem_response(406, kNotHtml);
+    PageQuestion question;
+    if (auto refusal = read_question(call.request, "report", nullptr, question)) return *std::move(refusal);
+    return in_turn(readers, call.request, [&] { return report_of_batch(batches, call, question); });
+}
+
 }  // namespace
 
 void add_report_routes(http::Router& router, JobService& jobs, Batches& batches, ComputeSlots& readers) {
@@ -165,6 +201,8 @@ void add_report_routes(http::Router& router, JobService& jobs, Batches& batches,
         router.add("GET", page.path, [&](const Call& call) { return get_page(jobs, readers, call, page); });
     router.add("GET", "/v1/batches/{id}/change-sheet.html",
                [&](const Call& call) { return get_batch_page(batches, jobs, readers, call); });
+    router.add("GET", "/v1/batches/{id}/report.html",
+               [&](const Call& call) { return get_batch_report(batches, readers, call); });
 }
 
 }  // namespace tunewright::server

@@ -1,7 +1,9 @@
 """The Python client with answers that are refused, cut off or missing: the server gives prepared answers."""
 
+import email
 import http.server
 import json
+import os
 import pathlib
 import sys
 import tempfile
@@ -97,25 +99,36 @@ class CannedTest(unittest.TestCase):
                                           units={"time": "min"}, total=2)
             posted = self.server.calls[0]
             self.assertEqual(posted[:2], ("POST", "/v1/batches?kind=check&name=unit+7&units.time=min"))
-            self.assertEqual((posted[2]["Content-Type"], posted[3]), ("text/csv", path.read_bytes()))
+            self.assertEqual(self.parts_posted(), [("file", "plant.csv", path.read_bytes())])
         self.assertEqual([path for _, path, _, _ in self.server.calls[1:]],
                          ["/v1/batches/b/results?follow=true&from=0", "/v1/batches/b/check"])
         self.assertEqual(told, [(1, 2), (2, 2)])
         self.assertEqual([loop["tag"] for loop in check.work_list], ["B", "A"])
         client.changes("old", check)
         self.assertEqual(self.server.calls[-1][1], "/v1/batches/b/check?before=old")
+        self.server.answers.append((200, {}, b"<html>"))
+        self.assertEqual(client.report_html(check), "<html>")
+        self.assertEqual(self.server.calls[-1][1], "/v1/batches/b/report.html")
         with self.assertRaisesRegex(LookupError, "a batch, b"):
-            client.report_html(check)
+            client.code(check, "c")
 
-    def test_a_check_of_a_folder_has_a_loop_for_each_file(self):
+    def parts_posted(self):
+        """The parts of the form of the first call: name, file, bytes."""
+        _, _, headers, body = self.server.calls[0]
+        head = "MIME-Version: 1.0\r\nContent-Type: %s\r\n\r\n" % headers["Content-Type"]
+        return [(part.get_param("name", header="Content-Disposition"), part.get_filename(), part.get_payload(decode=True))
+                for part in email.message_from_bytes(head.encode() + body).get_payload()]
+
+    def test_a_check_of_a_folder_posts_its_files(self):
         with tempfile.TemporaryDirectory() as folder:
-            for name in ("FIC2.csv", "FIC1.CSV", "notes.txt"):
+            for name in ("FIC2.csv", "FIC1.CSV", "notes.pdf"):
                 pathlib.Path(folder, name).write_text("t,y,u\n")
             self.check_of(folder, total=2, settings=True)
-            lines = [json.loads(line) for line in self.server.calls[0][3].splitlines()]
-            self.assertEqual(lines, [{"loops": [{"tag": tag, "csv": "t,y,u\n"}], "settings": True}
-                                     for tag in ("FIC1", "FIC2")])
-            self.assertEqual(self.server.calls[0][2]["Content-Type"], "application/x-ndjson")
+            parts = [("file", "FIC1.CSV", b"t,y,u\n"), ("file", "FIC2.csv", b"t,y,u\n")]
+            self.assertEqual(self.parts_posted(), parts)
+            self.assertEqual(self.server.calls[0][1], "/v1/batches?kind=check&settings=true")
+            self.check_of([os.path.join(folder, "FIC2.csv")])
+            self.assertEqual(self.parts_posted(), parts[1:])
         with tempfile.TemporaryDirectory() as empty, self.assertRaisesRegex(FileNotFoundError, "no file that ends"):
             self.serve().check(empty)
 
@@ -128,7 +141,28 @@ class CannedTest(unittest.TestCase):
 
         Frame.index = type("RangeIndex", (), {"name": None})
         self.check_of(Frame())
-        self.assertEqual(self.server.calls[0][1:4:2], ("/v1/batches?kind=check", b"t,A.PV,A.OP\n"))
+        self.assertEqual(self.server.calls[0][1], "/v1/batches?kind=check")
+        self.assertEqual(self.parts_posted(), [("file", None, b"t,A.PV,A.OP\n")])
+
+    def test_what_is_known_of_loops_is_a_part_of_the_form(self):
+        class Table:
+            columns = ["kind"]
+
+            def to_csv(self, index_label):
+                return index_label + ",kind\nA,flow\n"
+
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "A.csv")
+            path.write_text("t,y,u\n")
+            table = pathlib.Path(folder, "table")
+            table.write_text("tag\nA\n")
+            for loops, text in (({"A": {"kind": "flow", "Ti": 2.5}, "B,1": {"averaging": True, "Ti": None}},
+                                 b'tag,kind,Ti,averaging\r\nA,flow,2.5,\r\n"B,1",,,True\r\n'),
+                                (Table(), b"tag,kind\nA,flow\n"), (table, b"tag\nA\n")):
+                self.check_of(path, loops=loops)
+                self.assertEqual(self.parts_posted()[0], ("loops", "loops.csv", text))
+        with self.assertRaisesRegex(TypeError, "loops is for files"):
+            self.serve().check([{"tag": "A"}], loops={})
 
     def test_a_design_that_a_cancelled_search_had_is_kept(self):
         ended = {**DONE, "status": "cancelled", "partial": True}

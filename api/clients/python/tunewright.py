@@ -10,6 +10,8 @@ has the names, units and meanings of all fields, and they are not repeated here.
 into its request unchanged, so that a newer service needs no newer client.
 """
 
+import csv
+import io
 import json
 import os
 import random
@@ -18,7 +20,7 @@ import time
 import uuid
 from contextlib import suppress
 from http.client import HTTPException, HTTPResponse
-from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 from urllib.error import HTTPError
 from urllib.parse import quote, urlencode
 from urllib.request import Request, urlopen
@@ -189,6 +191,8 @@ class Client:
     def report_html(self, job: Union[str, Result, Check], controller: Optional[int] = None) -> str:
         """A report of a job's controller, as a page to print, sign and keep; by default of the first of the ranking.
         The report of a check has its work list and a page for each loop."""
+        if isinstance(job, Check) and job.job is None:
+            return self._body("/v1/batches/%s/report.html" % quote(_batch(job), safe=""))
         return self._body(_job(job) + "/report.html" + _query({"controller": controller}))
 
     def code(self, job: Union[str, Result], language: str, controller: Optional[int] = None, **options: Any) -> str:
@@ -217,36 +221,40 @@ class Client:
 
     # Loops in operation.
 
-    def check(self, source: Any, progress: Optional[Progress] = None, name: Optional[str] = None,
+    def check(self, source: Any, progress: Optional[Progress] = None, name: Optional[str] = None, loops: Any = None,
               **rest: Any) -> Check:
         """What is wrong with loops in operation, why, and what to do first.
 
-        `source` is the path of a CSV of many loops or of one; the path of a folder, whose *.csv files are one loop
-        each; a pandas DataFrame with the columns of many loops, such as FIC101.PV and FIC101.OP; or a list of loops
-        {"tag", "record" or "csv", "kind", ...}. A list becomes one job, anything else a batch with a job for each loop,
-        and `progress(done, total)` is called as they end. A KeyboardInterrupt cancels them.
+        `source` is the path of a CSV of many loops, of one or of one tag (FIC101.PV.csv); a list of such paths, or the
+        path of a folder of them; a pandas DataFrame with the columns of many loops, such as FIC101.PV and FIC101.OP; or
+        a list of loops {"tag", "record" or "csv", "kind", ...}. A list of loops becomes one job, anything else a batch
+        with a job for each loop, and `progress(done, total)` is called as they end. A KeyboardInterrupt cancels them.
+
+        `loops` has what is known of the loops of files: {"FIC101": {"kind": "flow", "op_low": 0, "op_high": 100, "Kp":
+        0.8, "Ti": 20}, ...}, a DataFrame with the tags as its index or in the column tag, or the path of such a CSV.
+        Findings about the files are in `notes` of the answer.
         """
-        if isinstance(source, (list, tuple)):
-            loops = [{**loop, "record": record(loop["record"])} if "record" in loop else loop for loop in source]
-            result = self.run({"loops": loops, **_request(name=name, **rest)})
+        if isinstance(source, (list, tuple)) and not all(isinstance(each, (str, os.PathLike)) for each in source):
+            if loops is not None:
+                raise TypeError("loops is for files; give its members in each loop of the list.")
+            given = [{**loop, "record": record(loop["record"])} if "record" in loop else loop for loop in source]
+            result = self.run({"loops": given, **_request(name=name, **rest)})
             return Check(result, job=result.job)
-        headers = {"Idempotency-Key": str(uuid.uuid4())}
-        if not hasattr(source, "to_csv") and os.path.isdir(source):
-            files = sorted(each for each in os.listdir(source) if each.lower().endswith(".csv"))
-            if not files:
-                raise FileNotFoundError("The folder %s has no file that ends in .csv." % source)
-            lines = b"".join(_encoded({"loops": [_loop_of_file(os.path.join(source, each))], **rest}) + b"\n"
-                             for each in files)
-            batch = self._json("POST", "/v1/batches" + _query({"name": name}), lines,
-                               {"Content-Type": "application/x-ndjson", **headers})
-        else:
-            units = rest.pop("units", {})
-            query = {"kind": "check", "name": name, **{"units." + unit: units[unit] for unit in units}, **rest}
-            batch = self._json("POST", "/v1/batches" + _query(query), _file_bytes(source),
-                               {"Content-Type": "text/csv", **headers})
+        parts = [("file", "" if hasattr(path, "to_csv") else os.path.basename(str(path)), _file_bytes(path))
+                 for path in _paths(source)]
+        if loops is not None:
+            parts.insert(0, ("loops", "loops.csv", _table_of_loops(loops)))
+        units = rest.pop("units", {})
+        words = {key: str(value).lower() if isinstance(value, bool) else value for key, value in rest.items()}
+        query = {"kind": "check", "name": name, **{"units." + unit: units[unit] for unit in units}, **words}
+        boundary = uuid.uuid4().hex
+        batch = self._json("POST", "/v1/batches" + _query(query), _form(parts, boundary),
+                           {"Content-Type": "multipart/form-data; boundary=" + boundary,
+                            "Idempotency-Key": str(uuid.uuid4())})
         for _ in self._rows("/v1/batches/" + batch["id"], batch["total"], progress or (lambda done, total: None)):
             pass
-        return Check(self.get("/v1/batches/%s/check" % batch["id"]), batch=batch["id"])
+        answer = self.get("/v1/batches/%s/check" % batch["id"])
+        return Check({**answer, "notes": batch.get("notes", [])}, batch=batch["id"])
 
     def changes(self, before: Union[str, Check], after: Union[str, Check]) -> Json:
         """The check `after` with what has changed since the check `before`, loop by loop, as the service answers it.
@@ -421,10 +429,42 @@ def _file_bytes(source: Any) -> bytes:
         return file.read()
 
 
-def _loop_of_file(path: str) -> Json:
-    """A loop from a CSV file; the name of the file is its tag."""
-    with open(path, "rb") as file:
-        return {"tag": os.path.splitext(os.path.basename(path))[0], "csv": _text(file.read())}
+def _paths(source: Any) -> List[Any]:
+    """The files of a source: those of a folder that may hold records, several, or one."""
+    if isinstance(source, (list, tuple)):
+        return list(source)
+    if hasattr(source, "to_csv") or not os.path.isdir(source):
+        return [source]
+    endings = (".csv", ".tsv", ".txt", ".dat")
+    files = sorted(each for each in os.listdir(source) if each.lower().endswith(endings))
+    if not files:
+        raise FileNotFoundError("The folder %s has no file that ends in %s." % (source, ", ".join(endings)))
+    return [os.path.join(source, each) for each in files]
+
+
+def _table_of_loops(loops: Any) -> bytes:
+    """What is known of loops as CSV."""
+    if hasattr(loops, "to_csv"):
+        return str(loops.to_csv(index=False) if "tag" in loops.columns else loops.to_csv(index_label="tag")).encode()
+    if not isinstance(loops, Mapping):
+        return _file_bytes(loops)
+    columns = list(dict.fromkeys(column for known in loops.values() for column in known))
+    table = io.StringIO()
+    writer = csv.writer(table)
+    writer.writerow(["tag", *columns])
+    for tag, known in loops.items():
+        writer.writerow([tag, *("" if known.get(column) is None else known[column] for column in columns)])
+    return table.getvalue().encode()
+
+
+def _form(parts: Iterable[Tuple[str, str, bytes]], boundary: str) -> bytes:
+    """multipart/form-data of parts with name, file name and bytes."""
+    body = []
+    for name, file, content in parts:
+        head = 'Content-Disposition: form-data; name="%s"' % name
+        head += '; filename="%s"' % file.replace('"', "%22") if file else ""
+        body += [("--%s\r\n%s\r\n\r\n" % (boundary, head)).encode(), content, b"\r\n"]
+    return b"".join(body) + ("--%s--\r\n" % boundary).encode()
 
 
 def _job(job: Union[str, Result, Check]) -> str:

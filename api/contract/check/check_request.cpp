@@ -10,7 +10,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMaxTagLength = 200, kMaxStartLength = 60;
+constexpr std::size_t kMaxTagLength = 200, kMaxStartLength = 60, kMaxNoteLength = 2000, kMaxNotes = 100;
 
 Codec<std::array<double, 2>> low_and_high() {
     return {[](const Json& value, std::array<double, 2>& target, Reader& reader) {
@@ -60,38 +60,48 @@ void check_loop_members(const Json&, GivenLoop& loop, Reader& reader) {
                                      "; it must be the date and time of t = 0, such as 2026-05-04T06:00:00Z.");
 }
 
+/// The members of what is known of a loop. `Owner` is LoopFacts or has it as its base.
+template <class Owner>
+void add_facts_members(Description<Owner>& d) {
+    using F = LoopFacts;
+    using enum check::LoopKind;
+    d.field("kind", &F::kind,
+            choice<check::LoopKind>({{"unknown", unknown},
+                                     {"flow", flow},
+                                     {"pressure", pressure},
+                                     {"level", level},
+                                     {"temperature", temperature},
+                                     {"composition", composition}}),
+            "What it measures. The Harris range of a level is judged only with averaging false, and its plant "
+            "may integrate (cure.valve); the other kinds are shown and filtered by, and change no conclusion.")
+        .field("averaging", &F::averaging, maybe(boolean()),
+               "true: a level that is there to smooth flows. Its variance and its slowness are its purpose and are not "
+               "judged. false: a level that must be held.")
+        .field("range", &F::range, object(ranges_contract()), "Ranges of measurement and output.", {.no_default = true})
+        .field("controller", &F::controller, maybe(one_of(controller_contract())),
+               "Today's settings, if known. Their gain and Ti are used instead of those that the record shows, unless "
+               "it clearly shows others (remark controller-differs).")
+        .field("weight", &F::weight, maybe(number({.minimum = 0})),
+               "Money that a mean error of one unit of y costs in an hour: the work list is then ordered by money.");
+}
+
 const Description<GivenLoop>& loop_contract() {
     static const auto description = [] {
         using L = GivenLoop;
-        using enum check::LoopKind;
         Description<L> d("CheckLoop", "A loop: its record in operation, and what is known of it.");
-        d.field("tag", &L::tag, maybe(text(kMaxTagLength)), "Its name in the answer, such as FIC101.")
-            .field("kind", &L::kind,
-                   choice<check::LoopKind>({{"unknown", unknown},
-                                            {"flow", flow},
-                                            {"pressure", pressure},
-                                            {"level", level},
-                                            {"temperature", temperature},
-                                            {"composition", composition}}),
-                   "What it measures. The Harris range of a level is judged only with averaging false, and its plant "
-                   "may integrate (cure.valve); the other kinds are shown and filtered by, and change no conclusion.")
-            .field("averaging", &L::averaging, maybe(boolean()),
-                   "true: a level that is there to smooth flows. Its variance and its slowness are its purpose and are "
-                   "not judged. false: a level that must be held.")
-            .field("record", &L::record, maybe(object(record_contract())),
-                   "Its record: measurement y, output u and, if known, set point r and mode; instead of csv.")
+        d.field("tag", &L::tag, maybe(text(kMaxTagLength)), "Its name in the answer, such as FIC101.");
+        add_facts_members(d);
+        d.field("record", &L::record, maybe(object(record_contract())),
+                "Its record: measurement y, output u and, if known, set point r and mode; instead of csv.")
             .field("csv", &L::csv, maybe(text(kMaxCsvLength)), "The record as CSV text; instead of record.")
             .field("columns", &L::columns, maybe(object(columns_contract())), "Columns of csv.")
             .field("time_unit", &L::time_unit, maybe(file_time_unit()), "Unit of the times in csv, if it states none.")
             .field("start", &L::start, maybe(text(kMaxStartLength)),
                    "Date and time of t = 0, ISO 8601: loops with a start are compared on one clock.")
-            .field("range", &L::range, object(ranges_contract()), "Ranges of measurement and output.",
-                   {.no_default = true})
-            .field("controller", &L::controller, maybe(one_of(controller_contract())),
-                   "Today's settings, if known. Their gain and Ti are used instead of those that the record shows, "
-                   "unless it clearly shows others (remark controller-differs).")
-            .field("weight", &L::weight, maybe(number({.minimum = 0})),
-                   "Money that a mean error of one unit of y costs in an hour: the work list is then ordered by money.")
+            .field(
+                "notes", &L::notes, list_of(text(kMaxNoteLength), 0, kMaxNotes),
+                "Sentences about how the record was made, such as \"12 values of bad quality count as missing.\" The "
+                "answer has them among the remarks on the record.")
             .check(check_loop_members);
         return d;
     }();
@@ -104,6 +114,24 @@ std::string reason_of(const Problem& problem) {
 }
 
 }  // namespace
+
+const Description<LoopFacts>& loop_facts_contract() {
+    static const auto description = [] {
+        Description<LoopFacts> d("LoopFacts", "What is known of a loop apart from its record.");
+        add_facts_members(d);
+        return d;
+    }();
+    return description;
+}
+
+void add_facts(const LoopFacts& facts, check::LoopQuestion& question) {
+    if (facts.kind != check::LoopKind::unknown) question.kind = facts.kind;
+    question.averaging = facts.averaging;
+    question.y_range = facts.range.pv;
+    question.u_range = facts.range.op;
+    if (facts.controller) question.controller = gains(*facts.controller);
+    question.weight = facts.weight;
+}
 
 const Description<CheckRequest>& check_request_contract() {
     static const auto description = [] {
@@ -135,18 +163,13 @@ std::string tag_of(const GivenLoop& loop, std::size_t index) {
     return loop.tag && !loop.tag->empty() ? *loop.tag : "loop " + std::to_string(index + 1);
 }
 
-OrReason<check::LoopQuestion> question_of(GivenLoop loop, const Units& units, std::size_t index) {
-    check::LoopQuestion question;
-    question.tag = tag_of(loop, index);
-    question.kind = loop.kind;
-    question.averaging = loop.averaging;
-    question.start = loop.epoch;
-    question.y_range = loop.range.pv;
-    question.u_range = loop.range.op;
-    if (loop.controller) question.controller = gains(*loop.controller);
-    question.weight = loop.weight;
-    question.units = {units.time_or_default(), units.y.value_or(""), units.u.value_or("")};
-    question.seconds = seconds_per(units.time_or_default()).value_or(1);
+OrReason<ReadLoop> question_of(GivenLoop loop, const Units& units, std::size_t index) {
+    ReadLoop out;
+    out.question.tag = tag_of(loop, index);
+    add_facts(loop, out.question);
+    out.question.start = loop.epoch;
+    out.question.units = {units.time_or_default(), units.y.value_or(""), units.u.value_or("")};
+    out.question.seconds = seconds_per(units.time_or_default()).value_or(1);
     GivenRecord given = loop.record ? std::move(*loop.record) : GivenRecord{};
     if (loop.csv) {
         given.csv = std::move(loop.csv);
@@ -156,8 +179,10 @@ OrReason<check::LoopQuestion> question_of(GivenLoop loop, const Units& units, st
     Reader reader;
     ReadRecord read = resolve(std::move(given), units, reader);
     if (const auto problem = reader.problem()) return {std::nullopt, reason_of(*problem)};
-    question.record = std::move(read.record);
-    return question;
+    out.notes = std::move(loop.notes);
+    for (std::string& sentence : reading_sentences(read)) out.notes.push_back(std::move(sentence));
+    out.question.record = std::move(read.record);
+    return out;
 }
 
 }  // namespace tunewright::api

@@ -19,19 +19,30 @@ struct LoopRanges {
     std::optional<std::array<double, 2>> pv, op;
 };
 
-/// One loop as sent: `record`, or `csv` with its columns.
-struct GivenLoop {
-    std::optional<std::string> tag;
+/// What is known of a loop apart from its record.
+struct LoopFacts {
     check::LoopKind kind = check::LoopKind::unknown;
     std::optional<bool> averaging;
+    LoopRanges range;
+    std::optional<Controller> controller;
+    std::optional<double> weight;
+};
+
+/// One loop as sent: `record`, or `csv` with its columns.
+struct GivenLoop : LoopFacts {
+    std::optional<std::string> tag;
     std::optional<GivenRecord> record;
     std::optional<std::string> csv, time_unit;
     std::optional<ColumnChoices> columns;
     std::optional<std::string> start;
     std::optional<double> epoch;  ///< of `start`, s since 1970
-    LoopRanges range;
-    std::optional<Controller> controller;
-    std::optional<double> weight;
+    std::vector<std::string> notes;
+};
+
+/// A loop whose record has been read, with the findings of reading it.
+struct ReadLoop {
+    check::LoopQuestion question;
+    std::vector<std::string> notes;
 };
 
 struct CheckRequest : JobTerms {
@@ -41,6 +52,12 @@ struct CheckRequest : JobTerms {
     bool cluster = true, settings = false;
 };
 
+/// The facts alone, without a record.
+const Description<LoopFacts>& loop_facts_contract();
+
+/// Gives the loop what is known of it. A kind that is not known is left as it is.
+void add_facts(const LoopFacts& facts, check::LoopQuestion& question);
+
 /// A job's request; its records are not read yet.
 const Description<CheckRequest>& check_request_contract();
 
@@ -48,7 +65,7 @@ const Description<CheckRequest>& check_request_contract();
 bool is_check_request(const Json& request);
 
 /// Reads the record of the loop numbered `index`; a record that cannot be read gives the reason, a sentence.
-OrReason<check::LoopQuestion> question_of(GivenLoop loop, const Units& units, std::size_t index);
+OrReason<ReadLoop> question_of(GivenLoop loop, const Units& units, std::size_t index);
 
 /// The tag, or "loop 1".
 std::string tag_of(const GivenLoop& loop, std::size_t index);

@@ -92,8 +92,10 @@ const Description<CheckAnswer>& check_result_contract() {
             .field(
                 "version", {}, [](const CheckAnswer&, Writer& out) { out.text(TUNEWRIGHT_VERSION); }, words().schema,
                 "Version of the service.")
-            .field("request_hash", &CheckAnswer::request_hash, words(),
-                   "SHA-256 of the request in its canonical form.");
+            .field("request_hash", &CheckAnswer::request_hash, words(), "SHA-256 of the request in its canonical form.")
+            .field("notes", &CheckAnswer::notes,
+                   unless<std::vector<std::string>>(list_of(words()), [](const auto& notes) { return notes.empty(); }),
+                   "Findings about the files of a check on the command line, such as tags that are not checked.");
         return d;
     }();
     return description;

@@ -16,6 +16,7 @@ struct CheckAnswer {
     CheckResult check;
     std::optional<Units> units;
     std::string request_hash;
+    std::vector<std::string> notes;  ///< findings about the files, if there is no request
 };
 
 /// The result of a job.

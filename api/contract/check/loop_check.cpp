@@ -4,6 +4,7 @@
 
 #include "api/contract/controller.h"
 #include "api/contract/plant/plant.h"
+#include "api/contract/record.h"
 #include "api/contract/result/evaluation.h"
 
 namespace tunewright::api {
@@ -444,7 +445,11 @@ const Description<CheckedLoop>& loop_of_batch_contract() {
              "Its entry in the batch, from 0.")
             .field(
                 "job", {}, [](const CheckedLoop&, Writer& out) { out.null(); }, words().schema,
-                "The job of the entry, whose result has the drawn parts too.");
+                "The job of the entry, whose result has the drawn parts too.")
+            .field(
+                "units", {}, [](const CheckedLoop&, Writer& out) { out.null(); }, object(units_contract()).schema,
+                "Units of its answer, as in its request; left out if that has none.", {},
+                [](const CheckedLoop&) { return true; });
         return d;
     }();
     return description;

@@ -135,9 +135,8 @@ private:
             put_in_order(mode);
         }
         const TagValues y = values_of(loop, kOutputRole), u = values_of(loop, kInputRole);
-        if (!y.t.empty() && !u.t.empty() && y.t.back() < u.t.front())
-            return set_fault(out, tag_name(loop, kInputRole) + " begins after " + tag_name(loop, kOutputRole) +
-                                      " has ended. Export both for the same time.");
+        if (auto apart = apart_sentence(y, tag_name(loop, kOutputRole), u, tag_name(loop, kInputRole)); !apart.empty())
+            return set_fault(out, std::move(apart));
         join_tags(y, u, values_of(loop, kReferenceRole), mode, out);
     }
 

@@ -23,8 +23,15 @@ struct LoopsOptions {
     bool time_unit_given = false;     ///< also that of times whose unit the file does not state
     std::string file_time_unit = {};  ///< of the times of the file, which overrides the file; "": the file's own
     std::string name = "Loop 1";      ///< tag of the loop in a file whose headings name none, such as "t,sp,pv,op"
+    bool named_by_file = false;       ///< several files may be parts of one loop; `name` is that of the file
     std::size_t max_numbers = kMaxLoopNumbers;
+
+    /// Takes the name of the file, without folders and without an ending such as .csv.
+    void set_file(const std::string& file);
 };
+
+/// True for the ending of a file that may hold records: ".csv", ".tsv", ".txt", ".dat".
+bool is_ending_of_records(std::string_view ending);
 
 class LoopTable {
 public:
@@ -50,7 +57,8 @@ public:
 /// 1. several loops in columns (wide_table.h);
 /// 2. a line for each loop and time, with its values in columns (long_rows.h);
 /// 3. a line for each tag and time (long_values.h);
-/// 4. one loop in columns.
+/// 4. one tag, if the file is one of several (tag_table.h);
+/// 5. one loop in columns.
 ///
 /// 422 with the reason if the file has none of these layouts. Adds its findings to `notes`. `head` and `layout` need
 /// not outlive the table.

@@ -4,14 +4,15 @@
 
 #include "api/csv/columns/heading.h"
 #include "api/csv/text.h"
+#include "api/csv/time_stamp.h"
 #include "api/historian/tags/loop_tags.h"
 
 namespace tunewright::api {
 namespace {
 
-/// True if the cells name a tag, a value and a time.
-bool are_tag_headings(const std::vector<std::string_view>& cells) {
-    bool tag = false, value = false, time = false;
+/// True if the cells name a tag, a value and a time; of a file of `one_tag` a value and a time.
+bool are_tag_headings(const std::vector<std::string_view>& cells, bool one_tag) {
+    bool tag = one_tag, value = false, time = false;
     for (const std::string_view cell : cells) {
         const Heading heading = split_heading(cell);
         tag = tag || is_tag_heading(heading.name);
@@ -23,7 +24,7 @@ bool are_tag_headings(const std::vector<std::string_view>& cells) {
 }
 
 /// The layout that begins with such a line among the first ones.
-std::optional<CsvLayout> layout_of_headings(std::string_view head) {
+std::optional<CsvLayout> layout_of_headings(std::string_view head, bool one_tag) {
     constexpr int kMaxLinesAbove = 20;
     std::size_t at = 0;
     std::vector<std::string_view> cells;
@@ -33,7 +34,7 @@ std::optional<CsvLayout> layout_of_headings(std::string_view head) {
         if (!line) return std::nullopt;
         for (const char separator : {'\t', ';', '|', ','}) {
             split_line(*line, separator, cells, storage);
-            if (!are_tag_headings(cells)) continue;
+            if (!are_tag_headings(cells, one_tag)) continue;
             CsvLayout layout;
             layout.separator = separator;
             layout.headings.assign(cells.begin(), cells.end());
@@ -43,6 +44,26 @@ std::optional<CsvLayout> layout_of_headings(std::string_view head) {
             layout.data_line = at < head.size() ? number + 1 : 0;
             return layout;
         }
+    }
+    return std::nullopt;
+}
+
+/// The layout of lines that are a time stamp and a word, such as a mode, without headings.
+std::optional<CsvLayout> layout_of_words(std::string_view head) {
+    constexpr std::size_t kMaxCells = 4;  // date, time of day, value, quality
+    std::size_t at = 0;
+    const auto line = next_line(head, at);
+    std::vector<std::string_view> cells;
+    std::deque<std::string> storage;
+    for (const char separator : {'\t', ';', '|', ','}) {
+        if (!line) break;
+        split_line(*line, separator, cells, storage);
+        if (cells.size() < 2 || cells.size() > kMaxCells || !read_time_stamp(cells.front())) continue;
+        CsvLayout layout;
+        layout.separator = separator;
+        layout.width = cells.size();
+        layout.data_line = 1;
+        return layout;
     }
     return std::nullopt;
 }
@@ -63,8 +84,12 @@ std::optional<int> rank_of(std::string_view head, const CsvLayout& layout, const
 
 }  // namespace
 
-void begin_below_tag_headings(std::string_view head, CsvLayout& layout) {
-    auto named = layout_of_headings(head);
+void begin_below_tag_headings(std::string_view head, bool one_tag, CsvLayout& layout) {
+    auto named = layout_of_headings(head, one_tag);
+    if (!named && one_tag && layout.data_line == 0) {
+        if (auto words = layout_of_words(head)) layout = *std::move(words);
+        return;
+    }
     if (!named || layout.pairs) return;
     if (named->separator == layout.separator) named->sign = layout.sign;
     const bool later = named->data_line > 0 && (layout.data_line == 0 || layout.data_line > named->data_line);

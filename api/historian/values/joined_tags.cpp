@@ -78,6 +78,12 @@ void put_in_order(TagModes& tag) {
     take_rows(rows, tag.t);
 }
 
+std::string apart_sentence(const TagValues& y, const std::string& y_name, const TagValues& u,
+                           const std::string& u_name) {
+    if (y.t.empty() || u.t.empty() || y.t.back() >= u.t.front()) return {};
+    return u_name + " begins after " + y_name + " has ended. Export both for the same time.";
+}
+
 void join_tags(const TagValues& y, const TagValues& u, const TagValues& r, const TagModes& mode, TaggedLoop& loop) {
     loop.t = row_times(y.t, u.t);
     loop.y = held_at(loop.t, y);

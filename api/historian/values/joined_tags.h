@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "api/historian/tagged_loop.h"
@@ -22,6 +23,11 @@ struct TagModes {
 /// Sorts by time if necessary. Of several values at one time the first is kept.
 void put_in_order(TagValues& tag);
 void put_in_order(TagModes& tag);
+
+/// The reason why the tags of y and u, with these names, are no loop: the times of u begin after those of y. "" if they
+/// do not.
+std::string apart_sentence(const TagValues& y, const std::string& y_name, const TagValues& u,
+                           const std::string& u_name);
 
 /// The rows of a loop from tags in the order of time, in three steps.
 ///

@@ -26,9 +26,9 @@ constexpr int kIterations = 12, kDampings = 8;
 constexpr double kConverged = 0.01;              // of the robust cost
 constexpr double kOutlier = 3, kFarOutlier = 8;  // standard deviations
 constexpr double kLargestPole = 0.998;
-constexpr double kLoadStep = 20;            // square of its size over its error
-constexpr double kFarthest = 30;            // standard deviations of a residual in the search for steps
-constexpr std::size_t kFewestBehind = 10;   // rows behind a step
+constexpr double kLoadStep = 20;           // square of its size over its error
+constexpr double kFarthest = 30;           // standard deviations of a residual in the search for steps
+constexpr std::size_t kFewestBehind = 10;  // rows behind a step
 constexpr double kCostOfStep = 5;
 constexpr int kSearches = 3;
 constexpr double kMad = 1.4826;  // standard deviation over the median magnitude, of a normal variable

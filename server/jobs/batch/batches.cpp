@@ -247,7 +247,7 @@ BatchReceipt Reception::seal() {
     }
     // The earlier batch was deleted while this body was compared with it.
     if (next_index_ == 0) return {BatchReceipt::Kind::store_failed, {}, {}, {}};
-    return {BatchReceipt::Kind::created, what.id, {}, {}};
+    return {BatchReceipt::Kind::created, what.id, {}, {}, reader_.notes()};
 }
 
 /// Returns when none of it is stored; a store that cannot drop it now does so later, when the receiver's timeout is

@@ -40,6 +40,7 @@ struct BatchReceipt {
     std::string id;  ///< of created and existing
     api::Problem problem;
     StoreFault fault;
+    std::vector<std::string> notes = {};  ///< of a created one: findings about its files
 };
 
 /// Passes a body piece by piece to a function, until that returns false; false if the body is incomplete.

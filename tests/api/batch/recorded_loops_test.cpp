@@ -97,7 +97,7 @@ TaggedLoop awkward_loop() {
 
 TEST(RecordedLoops, ReadBackAsTheSameNumbers) {
     const TaggedLoop loop = awkward_loop();
-    const Json request = Json::parse(loop_request(loop, "s", false));
+    const Json request = Json::parse(loop_request(loop, {}));
     EXPECT_FALSE(request.contains("units"));
     const Json& sent = request.at("loops").at(0);
     EXPECT_EQ(sent.at("start"), "2026-05-04T06:01:40.5Z");
@@ -124,7 +124,7 @@ TEST(RecordedLoops, HaveTheUnitThatIsAskedFor) {
     EXPECT_EQ(request.at("loops").at(0).at("time_unit"), "min");
     EXPECT_THAT(request.at("loops").at(0).at("csv").get<std::string>(), HasSubstr("\n1,,"));
     question.form = BatchForm::ndjson;
-    EXPECT_THAT(read_records(question, "{}").refusal, HasSubstr("units.time is a parameter for CSV"));
+    EXPECT_THAT(read_records(question, "{}").refusal, HasSubstr("units.time is a parameter for records"));
 }
 
 TEST(RecordedLoops, FailAlone) {
@@ -155,6 +155,92 @@ TEST(RecordedLoops, ComeInPortions) {
     ASSERT_EQ(batch.refusal, "");
     EXPECT_EQ(batch.entries.size(), static_cast<std::size_t>(kLoops));
     EXPECT_LT(batch.largest_portion, static_cast<std::size_t>(kLoops) / 2);
+}
+
+std::string form_part(const std::string& head, const std::string& content) {
+    return "--cut\r\nContent-Disposition: form-data; " + head + "\r\n\r\n" + content + "\r\n";
+}
+
+std::string as_file(const std::string& name, const std::string& content) {
+    return form_part("name=\"file\"; filename=\"" + name + "\"", content);
+}
+
+ReadBatch read_form(const std::string& parts, std::vector<std::string>* notes = nullptr, std::size_t piece = 1000) {
+    BatchQuestion question = of_records();
+    question.form = BatchForm::files;
+    question.boundary = "cut";
+    ReadBatch out;
+    BatchReader reader(question);
+    const std::string body = parts + "--cut--\r\n";
+    std::optional<Problem> problem;
+    for (std::size_t at = 0; at < body.size() && !problem; at += piece)
+        problem = reader.feed(std::string_view(body).substr(at, piece), out.entries);
+    do {
+        if (!problem) problem = reader.finish(out.entries);
+    } while (!problem && reader.more());
+    if (problem) out.refusal = problem->detail;
+    if (notes != nullptr) *notes = reader.notes();
+    return out;
+}
+
+TEST(RecordedFiles, AreLoopsWithWhatIsKnownOfThem) {
+    const std::string table =
+        form_part("name=\"loops\"", "tag,kind,op_low,op_high,weight\nTIC-102,flow,0,50,3\nX,flow,,,\n");
+    const std::string day = as_file("day.csv", recorded::wide_file());
+    for (const std::string& body : {table + day, day + table}) {
+        std::vector<std::string> notes;
+        const ReadBatch batch = read_form(body, &notes, 777);
+        ASSERT_EQ(batch.refusal, "");
+        ASSERT_EQ(batch.entries.size(), recorded::kTags.size());
+        const Json loop = request_in(batch.entries[2]).at("loops").at(0);
+        EXPECT_EQ(loop.at("tag"), "TIC-102");
+        EXPECT_EQ(loop.at("kind"), "flow");
+        EXPECT_EQ(loop.at("range"), Json({{"op", {0, 50}}}));
+        EXPECT_EQ(loop.at("weight"), 3);
+        EXPECT_FALSE(request_in(batch.entries[0]).at("loops").at(0).contains("weight"));
+        EXPECT_THAT(notes, testing::ElementsAre("X is in the table of loops, but no record has this tag."));
+    }
+}
+
+TEST(RecordedFiles, OfOneTagEachMakeALoop) {
+    std::string pv = "Time,Value\n", op = pv;
+    for (int k = 0; k < 30; ++k) {
+        pv += std::to_string(k) + "," + std::to_string(k % 7) + ".5\n";
+        op += std::to_string(k) + "," + std::to_string(k % 5) + ".5\n";
+    }
+    const ReadBatch batch = read_form(as_file("FIC1.PV.csv", pv) + as_file("FIC1.OP.csv", op));
+    ASSERT_EQ(batch.refusal, "");
+    ASSERT_EQ(batch.entries.size(), 1u);
+    const Json loop = request_in(batch.entries[0]).at("loops").at(0);
+    EXPECT_EQ(loop.at("tag"), "FIC1");
+    EXPECT_THAT(loop.at("notes").dump(), HasSubstr("each has a file of its own"));
+    EXPECT_THAT(read_form(as_file("FIC1.PV.csv", pv)).refusal, HasSubstr("No loop was found"));
+}
+
+TEST(RecordedFiles, AreRefusedTogetherIfTheFormIsNotValid) {
+    const std::string day = as_file("day.csv", recorded::wide_file());
+    EXPECT_THAT(read_form(day + form_part("name=\"loops\"", "tag,kind\nA,flw\n")).refusal,
+                HasSubstr("Line 2, kind: kind is"));
+    EXPECT_THAT(read_form(day + form_part("name=\"other\"", "x")).refusal, HasSubstr("a part other"));
+    EXPECT_THAT(read_form(form_part("name=\"loops\"", "tag\nA\n")).refusal, HasSubstr("no file"));
+    EXPECT_THAT(read_form(as_file("a.csv", "x\n")).refusal, HasSubstr("line"));
+    const ReadBatch some = read_form(as_file("a.csv", "x\n") + day);
+    ASSERT_EQ(some.entries.size(), 4u);
+    EXPECT_EQ(some.entries[0].name, "a.csv");
+    EXPECT_TRUE(std::holds_alternative<Problem>(some.entries[0].job));
+}
+
+TEST(RecordedLoops, KeepTheFindingsOfReading) {
+    std::string body = "Time,FIC1.PV,FIC1.OP,FIC2.PV,FIC2.OP\n";
+    for (int k = 0; k < 30; ++k)
+        body += std::to_string(k) + "," + (k == 7 || k == 9 ? "Bad" : std::to_string(k % 7) + ".5") + ",4.5," +
+                std::to_string(k % 7) + ".5," + (k == 5 ? "what" : "4.5") + "\n";
+    const ReadBatch batch = read_records(of_records(), body);
+    ASSERT_EQ(batch.entries.size(), 2u);
+    EXPECT_EQ(request_in(batch.entries[0]).at("loops").at(0).at("notes"),
+              Json({"2 values of the measurement or the output are of bad quality and count as missing."}));
+    EXPECT_EQ(request_in(batch.entries[1]).at("loops").at(0).at("notes"),
+              Json({"1 value of \"FIC2.OP\" is not a number (\"what\"); it counts as missing."}));
 }
 
 TEST(RecordedLoops, AreRefusedTogetherIfTheFileIsNone) {

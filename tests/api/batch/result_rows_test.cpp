@@ -292,5 +292,67 @@ TEST(Sha256, IsTheSameForEveryCut) {
     }
 }
 
+/// The cell of a line of append_check_csv below a heading.
+std::string under_check(const std::string& heading, const std::string& line) {
+    const std::vector<std::string> headings = cells(split_lines(check_csv_headings()).front()), row = cells(line);
+    EXPECT_EQ(headings.size(), row.size()) << line;
+    for (std::size_t i = 0; i < row.size(); ++i)
+        if (headings[i] == heading) return row[i];
+    return "no such column";
+}
+
+TEST(ResultRows, OfACheckHaveALineForEachLoop) {
+    const std::string result = R"({"units": {"time": "min", "y": "m3/h"}, "loops": [
+        {"tag": "=FIC1", "cause": {"verdict": "stiction", "confidence": "sure", "size": 3.25},
+         "oscillation": {"period": 54.5, "regularity": 31}, "service": {"automatic": 0.98, "manual": null,
+         "saturated_low": 0.125}, "performance": {"harris": {"low": 0.01, "high": 0.34}, "idle_index": -0.9,
+         "travel": 2.5, "reversals": 130}, "action": {"code": "repair-valve", "owner": "instruments"},
+         "quality": {"remarks": [{}, {}]}},
+        {"tag": "FIC2", "cause": {"verdict": "healthy", "confidence": "likely", "size": null},
+         "performance": {"harris": null}, "action": {"code": "none", "owner": "nobody"}}],
+        "ranking": [{"loop": 1, "gain": 0}, {"loop": 0, "gain": 0.5, "share": 0.25, "money": 7}]})";
+    std::string out;
+    append_check_csv({3, "id3", "unit", "succeeded", result, ""}, out);
+    const std::vector<std::string> lines = split_lines(out);
+    ASSERT_EQ(lines.size(), 2u);
+    const std::pair<const char*, const char*> expected[] = {{"index", "3"},
+                                                            {"name", "unit"},
+                                                            {"tag", "\"'=FIC1\""},
+                                                            {"verdict", "stiction"},
+                                                            {"confidence", "sure"},
+                                                            {"period", "54.5"},
+                                                            {"regularity", "31"},
+                                                            {"size", "3.25"},
+                                                            {"automatic", "0.98"},
+                                                            {"manual", ""},
+                                                            {"saturated_low", "0.125"},
+                                                            {"harris_low", "0.01"},
+                                                            {"harris_high", "0.34"},
+                                                            {"idle_index", "-0.9"},
+                                                            {"travel", "2.5"},
+                                                            {"reversals", "130"},
+                                                            {"gain", "0.5"},
+                                                            {"share", "0.25"},
+                                                            {"money", "7"},
+                                                            {"action", "repair-valve"},
+                                                            {"owner", "instruments"},
+                                                            {"remarks", "2"},
+                                                            {"time_unit", "min"},
+                                                            {"y_unit", "m3/h"},
+                                                            {"error", ""}};
+    for (const auto& [heading, cell] : expected) EXPECT_EQ(under_check(heading, lines[0]), cell) << heading;
+    EXPECT_EQ(under_check("tag", lines[1]), "FIC2");
+    EXPECT_EQ(under_check("gain", lines[1]), "0");
+    EXPECT_EQ(under_check("size", lines[1]), "");
+    out.clear();
+    append_check_csv({4, "id4", "FIC3", "failed", "", R"({"detail": "FIC3.PV has no number."})"}, out);
+    append_check_csv({5, "id5", "FIC4", "queued", "", ""}, out);
+    const std::vector<std::string> others = split_lines(out);
+    ASSERT_EQ(others.size(), 2u);
+    EXPECT_EQ(under_check("error", others[0]), "FIC3.PV has no number.");
+    EXPECT_EQ(under_check("verdict", others[0]), "");
+    EXPECT_EQ(under_check("status", others[1]), "queued");
+}
+
 }  // namespace
 }  // namespace tunewright::api

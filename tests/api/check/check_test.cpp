@@ -110,9 +110,10 @@ TEST(Check, ABatchIsJudgedAsOneRequest) {
         ASSERT_TRUE(std::holds_alternative<PreparedJob>(entry));
         const auto& job = std::get<PreparedJob>(entry);
         const JobOutcome outcome = run_job(StoredRequest{job.request_json, job.request_hash}, {});
-        checks.add(static_cast<std::int64_t>(i), "job" + std::to_string(i), outcome.result_json);
+        const std::string id = "job" + std::to_string(i);
+        checks.add({static_cast<std::int64_t>(i), id, "", outcome.result_json, ""});
     }
-    checks.add(2, "job2", "");
+    checks.add({2, "job2", "FIC3", "", R"({"detail": "No number."})"});
     const Json judged = Json::parse(checks.answer(true, nullptr)), whole = checked(request);
     EXPECT_EQ(schema_faults(judged, "BatchCheck"), std::vector<std::string>{});
     EXPECT_EQ(judged["failed"], 1);

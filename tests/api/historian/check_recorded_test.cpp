@@ -42,7 +42,7 @@ std::string operation_file() {
 TEST(CheckRecorded, IsTheCheckOfItsRequests) {
     const auto file = recorded::read_file(operation_file());
     ASSERT_THAT(file.loops, SizeIs(2));
-    const std::string request = loop_request(file.loops[0], "s", false);
+    const std::string request = loop_request(file.loops[0], {});
     const auto prepared = prepare_job(request);
     ASSERT_TRUE(std::holds_alternative<PreparedJob>(prepared)) << std::get<Problem>(prepared).detail;
     const auto by_request = Json::parse(run_job(std::get<PreparedJob>(prepared), {}).result_json);

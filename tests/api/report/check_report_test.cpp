@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "api/json/json.h"
 #include "api/report/check_words.h"
 #include "api/report/report.h"
 #include "api/report/terminal.h"
@@ -154,6 +156,61 @@ TEST(CheckReport, NewerCodesAreShownAsTheyAre) {
     EXPECT_EQ(verdict_title("unheard-of"), "unheard-of");
     EXPECT_EQ(action_title("check-range"), "look at the limit");
     EXPECT_EQ(effort_title(7), "–");
+}
+
+/// The judgement of a batch with `count` loops: every third one is healthy, the others tight; the last comes first.
+std::string batch_of(std::size_t count) {
+    Json loops = Json::array(), ranking = Json::array();
+    for (std::size_t i = 0; i < count; ++i) {
+        loops.push_back({{"tag", "FIC" + std::to_string(i)},
+                         {"index", i},
+                         {"job", "j"},
+                         {"units", {{"time", "min"}, {"y", "m3/h"}}},
+                         {"cause", {{"verdict", i % 3 == 0 ? "healthy" : "tight"}}}});
+        ranking.push_back({{"loop", count - 1 - i}, {"gain", 0.5}});
+    }
+    return Json{{"loops", loops}, {"ranking", ranking}, {"complete", false}, {"failed", 1}}.dump();
+}
+
+TEST(BatchReport, HasPagesForTheFirstLoopsWithACause) {
+    BatchReport report(batch_of(100));
+    const std::vector<std::size_t> pages = report.pages();
+    ASSERT_EQ(pages.size(), 50u);
+    EXPECT_EQ(pages[0], 98u) << "99 is healthy";
+    EXPECT_EQ(pages[1], 97u);
+    EXPECT_EQ(pages[2], 95u);
+    report.add_drawings(98, R"({"loops": [{}, {"trend": {"t": [0, 1], "y": [1, 2], "u": [3, 4]}}]})", 1);
+    report.add_drawings(97, "", 0);
+    report.add_failed("FIC<x>", "FIC.PV has no number.");
+    report.add_failed("", "");
+    const std::string page = report.html(
+        "Unit 7", {.job = "", .name = "", .date = "2026-05-04T06:00:00Z", .origin = "", .utc_offset_min = {}});
+    EXPECT_EQ(occurrences(page, "<section class=\"loop\">"), 50u);
+    EXPECT_EQ(occurrences(page, "m3/h</td>"), 100u) << "each gain in the unit of its loop";
+    EXPECT_EQ(occurrences(page, "Whole record, output"), 2u) << "of the loop with drawings; title and caption";
+    for (const char* part :
+         {"<h1>Unit 7: loop check</h1>", "2026-05-04 06:00 UTC", "100 loops: 34 healthy, 66 tuned too tight.",
+          "The pages of 50 loops follow: the first with a cause in the order of the work list, which has all 100 "
+          "loops.",
+          "The batch has not ended", "FIC&lt;x&gt;: FIC.PV has no number.", "Without a name: It has no result."})
+        EXPECT_THAT(page, HasSubstr(part));
+    EXPECT_THAT(page, Not(HasSubstr("<h2>Request</h2>")));
+}
+
+TEST(BatchReport, OfFewLoopsHasAPageForEach) {
+    EXPECT_EQ(BatchReport(batch_of(50)).pages().size(), 50u);
+    EXPECT_EQ(BatchReport(batch_of(51)).pages().size(), 34u);
+    // The saved judgement of a batch is a check for `tunewright report` and for a terminal.
+    const std::string page = report_of(batch_of(3));
+    EXPECT_EQ(occurrences(page, "<section class=\"loop\">"), 3u);
+    EXPECT_THAT(check_text(batch_of(3)), HasSubstr("gain (m3/h)"));
+}
+
+TEST(CheckReport, FindingsAboutTheFilesAreNamed) {
+    Json noted = Json::parse(result());
+    noted["notes"] = {"TI103 is not checked."};
+    EXPECT_THAT(report_of(noted.dump()), HasSubstr("<h2>Files</h2><ul><li>TI103 is not checked.</li></ul>"));
+    EXPECT_THAT(check_text(noted.dump()), HasSubstr("\nNote: TI103 is not checked.\n"));
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <map>
 #include <sstream>
 
-#include "engine/check/peak_search.h"
 #include "engine/check/pace/loop_law.h"
+#include "engine/check/peak_search.h"
 #include "engine/check/valve/valve_model.h"
 #include "tests/test_data.h"
 
@@ -35,8 +35,7 @@ Columns columns_of(const std::string& name) {
 
 TEST(CheckReference, Oscillations) {
     const Columns columns = columns_of("oscillation.csv");
-    const Peak sine = PeakSearch(columns.at("sine")).strongest(),
-               square = PeakSearch(columns.at("square")).strongest();
+    const Peak sine = PeakSearch(columns.at("sine")).strongest(), square = PeakSearch(columns.at("square")).strongest();
     EXPECT_NEAR(sine.period, 37.2765241, 0.02);
     EXPECT_NEAR(square.period, 49.9356074, 0.03);
     EXPECT_NEAR(sine.line_period, 37.3018534, 0.01);

@@ -59,6 +59,29 @@ class CheckCommandTest(unittest.TestCase):
             answer = self.checked(name, "--answer-unit", "min")
             self.assertAlmostEqual(answer["loops"][0]["quality"]["sample_time"], 10 / 60, places=9)
 
+    def test_a_file_for_each_tag_and_a_table_of_the_loops(self):
+        with tempfile.TemporaryDirectory() as folder, tempfile.NamedTemporaryFile("w", suffix=".csv") as table:
+            lines = [line.split(",") for line in plant(["FIC1"]).splitlines()]
+            for name, column in (("FIC1.PV.csv", 1), ("FIC1.OP.csv", 2), ("TI3.PV.csv", 1)):
+                with open(os.path.join(folder, name), "w") as file:
+                    file.write("Time,Value\n" + "".join("%s,%s\n" % (line[0], line[column]) for line in lines[1:]))
+            table.write("tag,kind,weight\nFIC1,pressure,3\nFIC8,flow,\n")
+            table.flush()
+            answer = self.checked(folder, "--loops", table.name)
+            self.assertEqual(self.tags(answer), ["FIC1"])
+            self.assertEqual(answer["loops"][0]["quality"]["rows"], 400)
+            self.assertEqual(answer["loops"][0]["weight"], 3)
+            self.assertEqual(answer["notes"],
+                             ["TI3 has only a measurement or only a controller output and is not checked.",
+                              "FIC8 is in the table of loops, but no record has this tag."])
+            self.assertIn("Note: TI3 has only", run("check", folder, "--loops", table.name, "--table").stdout)
+            table.write("FIC2,flw,\n")
+            table.flush()
+            done = run("check", folder, "--loops", table.name)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("Line 4, kind", json.loads(done.stderr)["detail"])
+        self.assertEqual(run("check", "-", "--loops", "/nowhere", text=plant(["A"])).returncode, 1)
+
     def test_requests(self):
         loop = {"tag": "A", "csv": plant(["A"]), "columns": {"t": 1, "y": 2, "u": 3}}
         request = json.dumps({"loops": [loop]})

@@ -140,6 +140,7 @@ export type components = {
       cancel_requested: boolean;
       created_at: string;
       finished_at: string | null;
+      notes?: string[];
       links: {
         [key: string]: string;
       };
@@ -1093,14 +1094,15 @@ export type components = {
       tag?: string;
       kind?: "unknown" | "flow" | "pressure" | "level" | "temperature" | "composition";
       averaging?: boolean;
+      range?: components["schemas"]["LoopRanges"];
+      controller?: components["schemas"]["Controller"];
+      weight?: number;
       record?: components["schemas"]["Record"];
       csv?: string;
       columns?: components["schemas"]["Columns"];
       time_unit?: string;
       start?: string;
-      range?: components["schemas"]["LoopRanges"];
-      controller?: components["schemas"]["Controller"];
-      weight?: number;
+      notes?: string[];
     };
     LoopRanges: {
       pv?: [
@@ -1121,6 +1123,7 @@ export type components = {
       units?: components["schemas"]["Units"];
       version: string;
       request_hash: string;
+      notes?: string[];
     };
     LoopCheck: {
       tag: string;
@@ -1340,6 +1343,7 @@ export type components = {
       trend: components["schemas"]["LoopTrend"];
       index: number;
       job: string;
+      units?: components["schemas"]["Units"];
     };
     LoopChange: {
       before: "healthy" | "stiction" | "backlash" | "tight" | "sluggish" | "external" | "saturation" | "quantised" | "manual" | "frozen" | "undetermined" | "insufficient-data";

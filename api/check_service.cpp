@@ -18,38 +18,18 @@
 namespace tunewright::api {
 namespace {
 
-/// Loops that could be read, with the findings of reading each, and the others with their place.
-struct ReadLoops {
-    CheckQuestion question;
-    std::vector<std::size_t> places;
-    std::vector<std::pair<std::size_t, CheckedLoop>> unreadable;
-    std::vector<std::vector<std::string>> notes;  ///< of the loops of the question
-
-    void add(ReadLoop loop, std::size_t place) {
-        question.loops.push_back(std::move(loop.question));
-        notes.push_back(std::move(loop.notes));
-        places.push_back(place);
-    }
-    void add_unreadable(std::string tag, const std::string& why, std::size_t place) {
-        unreadable.emplace_back(place, CheckedLoop{check::unreadable_loop(std::move(tag), why), {}});
-    }
-};
-
-ReadLoops read_loops(CheckRequest&& request) {
-    ReadLoops out;
-    out.question.cluster = request.cluster;
-    out.question.settings = request.settings;
+CheckQuestion question_of(CheckRequest&& request) {
+    CheckQuestion out;
+    out.cluster = request.cluster;
+    out.settings = request.settings;
     const Units units = request.units.value_or(Units{});
-    for (std::size_t i = 0; i < request.loops.size(); ++i) {
-        std::string tag = tag_of(request.loops[i], i);
-        auto loop = question_of(std::move(request.loops[i]), units, i);
-        loop ? out.add(std::move(*loop.value), i) : out.add_unreadable(std::move(tag), loop.why, i);
-    }
+    for (std::size_t i = 0; i < request.loops.size(); ++i)
+        out.loops.push_back(question_of(std::move(request.loops[i]), units, i));
     return out;
 }
 
 /// Gives the record the modes of the loop, as a record in CSV has them, and notes those that are not known.
-void read_modes(const TaggedLoop& loop, ReadLoop& out) {
+void read_modes(const TaggedLoop& loop, check::LoopQuestion& out) {
     if (loop.mode.empty()) return;
     ModeColumn column;
     for (const std::uint8_t mode : loop.mode) {
@@ -57,57 +37,40 @@ void read_modes(const TaggedLoop& loop, ReadLoop& out) {
         column.add_row();
     }
     if (std::string unknown = column.unknown(); !unknown.empty()) out.notes.push_back(std::move(unknown));
-    out.question.record.automatic = column.take();
+    out.record.automatic = column.take();
 }
 
-ReadLoop read_loop(TaggedLoop loop, const LoopFacts& facts, const std::string& time_unit) {
-    const double seconds = seconds_per(time_unit).value_or(1);
-    ReadLoop out;
-    check::LoopQuestion& question = out.question;
-    out.notes = reading_notes(loop);
-    read_modes(loop, out);
+check::LoopQuestion question_about(TaggedLoop loop, const LoopFacts& facts, const std::string& time_unit) {
+    check::LoopQuestion question;
+    question.seconds = seconds_per(time_unit);
+    question.units.time = time_unit;
     question.kind = kind_of_tag(loop.tag).kind;
     question.tag = std::move(loop.tag);
-    question.seconds = seconds;
-    question.units.time = time_unit;
+    question.unreadable = std::move(loop.fault);
+    if (question.unreadable) return question;
+    question.notes = reading_notes(loop);
+    read_modes(loop, question);
     add_facts(facts, question);
     if (loop.epoch) {
         const double zero = loop.t.front();
-        question.start = *loop.epoch + zero * seconds;
+        question.start = *loop.epoch + zero * question.seconds.value_or(1);
         for (double& t : loop.t) t -= zero;
     }
     question.record.t = std::move(loop.t);
     question.record.y = std::move(loop.y);
     question.record.u = std::move(loop.u);
     if (hold_reference(loop.r)) question.record.r = std::move(loop.r);
-    return out;
+    return question;
 }
 
-ReadLoops read_recorded(RecordedLoops& recorded) {
-    ReadLoops out;
-    out.question.settings = recorded.settings;
-    const std::string time_unit = recorded.time_unit.value_or("s");
-    for (std::size_t i = 0; i < recorded.loops.size(); ++i) {
-        TaggedLoop loop = std::exchange(recorded.loops[i], {});
-        const LoopFacts facts = i < recorded.facts.size() ? recorded.facts[i] : LoopFacts{};
-        loop.fault ? out.add_unreadable(std::move(loop.tag), *loop.fault, i)
-                   : out.add(read_loop(std::move(loop), facts, time_unit), i);
-    }
+CheckQuestion question_of(RecordedLoops& recorded) {
+    CheckQuestion out;
+    out.settings = recorded.settings;
+    for (std::size_t i = 0; i < recorded.loops.size(); ++i)
+        out.loops.push_back(question_about(std::exchange(recorded.loops[i], {}),
+                                           i < recorded.facts.size() ? recorded.facts[i] : LoopFacts{},
+                                           recorded.time_unit.value_or("s")));
     return out;
-}
-
-/// The engine's answer, with the findings of reading and with the loops that could not be read in their places.
-Expected<CheckResult> checked(ReadLoops loops, const RunControl& control) {
-    auto result = ask_check(loops.question, control);
-    if (!result) return result;
-    for (std::size_t i = 0; i < loops.notes.size(); ++i)
-        for (std::string& note : loops.notes[i])
-            result->loops[i].quality.remarks.push_back({"file-read", std::move(note), WarningLevel::warning});
-    if (loops.unreadable.empty()) return result;
-    for (auto& [place, loop] : loops.unreadable)
-        result->loops.insert(result->loops.begin() + static_cast<std::ptrdiff_t>(place), std::move(loop));
-    result->plant = judged_together(result->loops, loops.question.cluster);
-    return result;
 }
 
 /// JobOutline of the document: of the loop to mend first.
@@ -151,18 +114,30 @@ JobOutcome outcome_of(Expected<CheckResult> result, CheckAnswer rest) {
     return outcome;
 }
 
+/// True if every member but the loops is that of the first request, or left to it.
+bool belongs_to(const Json& request, const Json& first) {
+    for (const auto& [name, value] : request.items())
+        if (name != "loops" && (!first.contains(name) || first[name] != value)) return false;
+    return true;
+}
+
 }  // namespace
 
 JobOutcome check_outcome(CheckRequest request, std::string_view hash, const RunControl& control) {
     CheckAnswer rest{{}, request.units, std::string(hash), {}};
-    return outcome_of(checked(read_loops(std::move(request)), control), std::move(rest));
+    return outcome_of(ask_check(question_of(std::move(request)), control), std::move(rest));
 }
 
 JobOutcome check_recorded(RecordedLoops recorded, const RunControl& control) {
     CheckAnswer rest;
     if (recorded.time_unit) rest.units.emplace().time = recorded.time_unit;
     rest.notes = std::move(recorded.notes);
-    return outcome_of(checked(read_recorded(recorded), control), std::move(rest));
+    if (recorded.loops.empty())
+        return outcome_of(Error{ErrorKind::invalid_argument, "",
+                                "The files hold no loop: a loop has a measurement and a controller output, such as "
+                                "FIC101.PV and FIC101.OP."},
+                          std::move(rest));
+    return outcome_of(ask_check(question_of(recorded), control), std::move(rest));
 }
 
 bool is_check_text(std::string_view request) { return is_check_request(Json::parse(request, nullptr, false)); }
@@ -183,10 +158,18 @@ std::variant<std::string, Problem> joined_requests(std::string_view text) {
             problem.detail = "Line " + std::to_string(number) + " is not a request for a check: {\"loops\": [...]}.";
             return problem;
         }
-        if (!joined)
+        if (!joined) {
             joined = *request;
-        else
-            for (const Json& loop : (*request)["loops"]) (*joined)["loops"].push_back(loop);
+            continue;
+        }
+        if (!belongs_to(*request, *joined)) {
+            Problem problem{422, "invalid-request", "The requests do not belong together", {}, {}, {}};
+            problem.detail = "Line " + std::to_string(number) +
+                             " differs from the first in a member beside loops, such as units or settings. Give the "
+                             "same ones in every line, or check them apart.";
+            return problem;
+        }
+        for (const Json& loop : (*request)["loops"]) (*joined)["loops"].push_back(loop);
     }
     if (!joined) return std::get<Problem>(std::move(whole));
     return joined->dump();
@@ -195,7 +178,7 @@ std::variant<std::string, Problem> joined_requests(std::string_view text) {
 Answer check_call(std::string_view body, const RunControl& control) {
     auto decoded = read_body(body, check_request_contract());
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
-    auto result = checked(read_loops(std::get<CheckRequest>(std::move(decoded))), control);
+    auto result = ask_check(question_of(std::get<CheckRequest>(std::move(decoded))), control);
     if (!result) return refusal(to_problem(result.error()));
     // The partial result of a check that was stopped is not kept.
     if (result->partial) return refusal(to_problem(Error{ErrorKind::timeout, "", "The check was stopped."}));

@@ -36,7 +36,8 @@ JobOutcome check_recorded(RecordedLoops recorded, const RunControl& control);
 bool is_check_text(std::string_view request);
 
 /// One request from a text of requests, each in a line of its own (NDJSON): the loops of all of them, and the other
-/// members of the first. A single request is unchanged. 400 if a line is not JSON.
+/// members of the first. A single request is unchanged. 400 if a line is not JSON, 422 if its other
+/// members differ.
 std::variant<std::string, Problem> joined_requests(std::string_view text);
 
 }  // namespace tunewright::api

@@ -23,6 +23,13 @@ void compare(const std::deque<check::LoopCheck>& now, const std::deque<check::Lo
     }
 }
 
+/// Changes the causes that another loop explains.
+check::PlantCheck judged_together(std::deque<check::LoopCheck>& loops) {
+    std::vector<check::LoopCheck*> all;
+    for (check::LoopCheck& one : loops) all.push_back(&one);
+    return check::check_plant(all);
+}
+
 }  // namespace
 
 void PlantChecks::add(const CheckEntry& entry) {
@@ -51,9 +58,7 @@ void PlantChecks::add(const CheckEntry& entry) {
 std::string PlantChecks::answer(bool complete, const PlantChecks* before) const {
     BatchCheck out;
     std::deque<check::LoopCheck> judged = checks_;
-    std::vector<check::LoopCheck*> all;
-    for (check::LoopCheck& one : judged) all.push_back(&one);
-    out.plant = check::check_plant(all);
+    out.plant = judged_together(judged);
     for (std::size_t i = 0; i < judged.size(); ++i) {
         Writer members;
         members.begin_object();
@@ -61,7 +66,11 @@ std::string PlantChecks::answer(bool complete, const PlantChecks* before) const 
         members.end_object();
         out.loops.push_back(texts_[i] + "," + members.take().substr(1));
     }
-    if (before != nullptr) compare(judged, before->checks_, out);
+    if (before != nullptr) {
+        std::deque<check::LoopCheck> earlier = before->checks_;
+        judged_together(earlier);
+        compare(judged, earlier, out);
+    }
     out.complete = complete;
     out.failed = static_cast<int>(failed_.size());
     Writer text;

@@ -79,9 +79,10 @@ private:
         const double manual = std::max(held, q_.service.manual.value_or(0));
         const bool y_rests = !(deviation(q_.samples.y) > 0), u_rests = !(deviation(q_.samples.u) > 0);
         if (y_rests && u_rests)
-            return open("Neither the measurement nor the output moves: the unit is out of service, or nothing was "
-                        "recorded.",
-                        {Verdict::frozen, Verdict::manual});
+            return open(
+                "Neither the measurement nor the output moves: the unit is out of service, or nothing was "
+                "recorded.",
+                {Verdict::frozen, Verdict::manual});
         if (y_rests || (frozen >= kFrozenShare && held < kHeldShare)) {
             add("measurement-still", frozen, kFrozenShare,
                 "The measurement stands still for " + percent(frozen) + " of the time while the output moves.");
@@ -114,8 +115,9 @@ private:
         }
         if (peak_.regularity > kRegular)
             add("regularity", peak_.regularity, kRegular,
-                std::string(same ? "Output and error oscillate" : by_output ? "The output oscillates"
-                                                                            : "The error oscillates") +
+                std::string(same        ? "Output and error oscillate"
+                            : by_output ? "The output oscillates"
+                                        : "The error oscillates") +
                     " with a period of " + time(peak_.period) + " and a regularity of " +
                     figure_text(peak_.regularity) + "; above " + figure_text(kRegular) + " is regular.");
     }
@@ -186,9 +188,15 @@ private:
         if (!best) return std::nullopt;
         add("valve-explains", best->gain, {},
             "A valve that sticks explains the measurement better than the output itself: the unexplained square is " +
-                percent(1 - std::exp(-best->gain)) + " less, in most tenths of the record.");
+                percent(1 - std::exp(-best->gain)) + " less, in at least half of the tenths of " + judged_part() + ".");
         const bool sure = best->gain >= kSureValveGain && best->strength >= kSureValveStrength;
         return of_valve(best->band, best->jump, sure, best->period * q_.samples.step);
+    }
+
+    /// The tests of valves look at the end of a very long record.
+    std::string judged_part() const {
+        const bool whole = bank_->rows() + bank_->stride() > q_.samples.size();
+        return whole ? "the record" : "the last " + time(double(bank_->rows())) + " of the record";
     }
 
     Cause of_valve(double band, double jump, bool sure, Figure period) {
@@ -252,10 +260,11 @@ private:
         }
         if ((peak_.regularity >= kOscillates && peak_.share > kClearShare) ||
             (line_ >= 0.85 && peak_.persistence >= 0.6)) {
-            Cause out = open("The loop oscillates, over " + figure_text(std::floor(peak_.cycles)) +
-                                 " cycles, but the record does not show whether the valve, a disturbance or the tuning is "
-                                 "the cause. Record for longer, or put the loop in manual for some periods.",
-                             {Verdict::stiction, Verdict::tight, Verdict::external});
+            Cause out =
+                open("The loop oscillates, over " + figure_text(std::floor(peak_.cycles)) +
+                         " cycles, but the record does not show whether the valve, a disturbance or the tuning is "
+                         "the cause. Record for longer, or put the loop in manual for some periods.",
+                     {Verdict::stiction, Verdict::tight, Verdict::external});
             out.period = peak_.period * q_.samples.step;
             return out;
         }

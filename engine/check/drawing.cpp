@@ -31,8 +31,8 @@ Trend trend_of(const Samples& samples) {
         const std::size_t from = k * n / stretches, to = (k + 1) * n / stretches;
         std::vector<std::size_t> extremes;
         for (const auto* values : {&samples.y, &samples.u}) {
-            const auto [low, high] = std::minmax_element(values->begin() + std::ptrdiff_t(from),
-                                                         values->begin() + std::ptrdiff_t(to));
+            const auto [low, high] =
+                std::minmax_element(values->begin() + std::ptrdiff_t(from), values->begin() + std::ptrdiff_t(to));
             extremes.push_back(std::size_t(low - values->begin()));
             extremes.push_back(std::size_t(high - values->begin()));
         }

@@ -70,6 +70,7 @@ std::string UnitNames::y_text(double value) const { return with_unit(value, y); 
 std::string UnitNames::u_text(double value) const { return with_unit(value, u); }
 
 Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_token& stop) {
+    if (question.unreadable) return unreadable_loop(question.tag, *question.unreadable);
     if (auto error = refused(question)) return *error;
     LoopCheck check;
     check.tag = question.tag;
@@ -78,12 +79,15 @@ Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_tok
     const Rows rows = rows_of(question.record);
     const Samples samples = even_samples(rows);
     check.quality = quality_of(rows, samples, question.y_range);
+    for (const std::string& note : question.notes)
+        check.quality.remarks.push_back({"file-read", note, WarningLevel::warning});
     const auto u_range = output_range(question, samples);
     check.units = units_of(question, u_range);
     ChosenLaw law = chosen_law(question, samples, u_range, check.units);
     check.law = law.law;
     if (law.differs) check.quality.remarks.push_back(std::move(*law.differs));
     check.service = service_of(samples, u_range, check.quality.u_step, check.law);
+    check.performance = no_performance("The record has no usable rows.");
     if (!samples.y.empty()) {
         check.performance = performance_of(samples, u_range, question);
         check.trend = trend_of(samples);
@@ -110,6 +114,7 @@ LoopCheck unreadable_loop(std::string tag, std::string reason) {
     LoopCheck check;
     check.tag = std::move(tag);
     check.quality.enough = false;
+    check.performance = no_performance("The record could not be read.");
     check.quality.remarks.push_back({"not-read", std::move(reason), WarningLevel::bad});
     check.cause = insufficient(check.quality);
     check.action = action_for(check);

@@ -59,8 +59,10 @@ struct LoopQuestion {
     std::optional<std::array<double, 2>> y_range, u_range;  ///< of the transmitter, of the output
     std::optional<ParallelPid> controller;                  ///< today's settings
     std::optional<double> weight;                           ///< money per unit of |e| and hour
-    double seconds = 1;                                     ///< in a unit of the record's time
+    std::optional<double> seconds = 1;                      ///< in a unit of the record's time; empty: not known
     UnitNames units;
+    std::optional<std::string> unreadable = {};  ///< why there is no record, a sentence: then its answer says only that
+    std::vector<std::string> notes = {};         ///< findings of reading the record, for the remarks on it
 };
 
 /// How good the record is. Shares are of the rows or of the time, 0 to 1.
@@ -139,7 +141,7 @@ struct PerformanceFigures {
     Figure following;          ///< variance of the error over that of the set point, where the set point moves
     double offset = 0;         ///< mean of the error, y
     Figure travel;             ///< of the output, share of its range per hour
-    double reversals = 0;      ///< of the output, per hour
+    Figure reversals;          ///< of the output, per hour
 };
 
 /// What to do first, and who does it.
@@ -206,7 +208,7 @@ struct LoopCheck {
 inline constexpr int kTrendStretches = 100;
 
 /// Errors: invalid_argument for columns of unequal lengths or a range that is not one; cancelled. A record that is too
-/// poor for a diagnosis is no error.
+/// poor for a diagnosis, or that could not be read, is no error.
 Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_token& stop);
 
 /// The check of a loop whose record could not be read, for that reason: a sentence.

@@ -47,7 +47,8 @@ OrReason<HarrisRange> harris_range(const Samples& samples, const LoopQuestion& q
 }
 
 /// All moves of the output, and their turns.
-void add_output(PerformanceFigures& out, const Samples& samples, double hours, const OutputRange& u_range) {
+void add_output(PerformanceFigures& out, const Samples& samples, const LoopQuestion& question,
+                const OutputRange& u_range) {
     double travel = 0, direction = 0;
     int turns = 0;
     for (std::size_t i = 1; i < samples.u.size(); ++i) {
@@ -57,11 +58,13 @@ void add_output(PerformanceFigures& out, const Samples& samples, double hours, c
         if (move * direction < 0) ++turns;
         direction = move;
     }
-    out.travel = no_figure(hours > 0 ? "The range of the output is not known: give it as range.op."
-                                     : "The record has no duration.");
+    const double hours = samples.duration() * question.seconds.value_or(0) / kHour;
+    out.travel = out.reversals = no_figure(question.seconds ? "The record has no duration."
+                                                            : "The unit of time is not known: give s, min, h or ms.");
     if (!(hours > 0)) return;
-    if (u_range.known) out.travel = travel / u_range.width() / hours;
     out.reversals = turns / hours;
+    out.travel = u_range.known ? Figure(travel / u_range.width() / hours)
+                               : no_figure("The range of the output is not known: give it as range.op.");
 }
 
 /// (t+ - t-)/(t+ + t-) over the moves of block means, t+ where output and measurement move together (Hägglund 1999,
@@ -95,8 +98,14 @@ Figure following(const Samples& samples, const std::vector<double>& error) {
 
 }  // namespace
 
-PerformanceFigures performance_of(const Samples& samples, const OutputRange& u_range,
-                                  const LoopQuestion& question) {
+PerformanceFigures no_performance(const std::string& why) {
+    PerformanceFigures out;
+    out.harris = {std::nullopt, why};
+    out.idle_index = out.variability_share = out.following = out.travel = out.reversals = no_figure(why);
+    return out;
+}
+
+PerformanceFigures performance_of(const Samples& samples, const OutputRange& u_range, const LoopQuestion& question) {
     PerformanceFigures out;
     const auto error = samples.error();
     out.variability = deviation(error);
@@ -111,7 +120,7 @@ PerformanceFigures performance_of(const Samples& samples, const OutputRange& u_r
     for (double& e : centred) e -= offset;
     out.offset = offset;
     out.independent = effective_samples(centred);
-    add_output(out, samples, samples.duration() * question.seconds / kHour, u_range);
+    add_output(out, samples, question, u_range);
     out.harris = harris_range(samples, question);
     out.idle_index = idle_index(samples);
     out.following = following(samples, error);

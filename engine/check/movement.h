@@ -5,7 +5,9 @@
 
 namespace tunewright::check {
 
-PerformanceFigures performance_of(const Samples& samples, const OutputRange& u_range,
-                                  const LoopQuestion& question);
+/// Of a record without usable rows.
+PerformanceFigures no_performance(const std::string& why);
+
+PerformanceFigures performance_of(const Samples& samples, const OutputRange& u_range, const LoopQuestion& question);
 
 }  // namespace tunewright::check

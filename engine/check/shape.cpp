@@ -56,14 +56,15 @@ std::vector<float> bands(const Curve& spectrum, double seconds) {
 Shape shape_of(const Samples& samples, const Oscillation& oscillation, const OscillationStudy& study,
                const LoopQuestion& question) {
     Shape shape;
-    shape.dated = question.start.has_value();
+    const double seconds = question.seconds.value_or(1);
+    shape.dated = question.start.has_value() && question.seconds.has_value();
     const double zero = question.start.value_or(0);
-    shape.from = zero + question.seconds * samples.start;
-    shape.to = shape.from + question.seconds * samples.duration();
-    if (oscillation.found) shape.period = question.seconds * oscillation.periods.front().period;
-    shape.spectrum = bands(study.spectrum, question.seconds);
-    add_wave(samples, study, oscillation.found ? oscillation.periods.front().period : study.strongest.period,
-             question.seconds, shape);
+    shape.from = zero + seconds * samples.start;
+    shape.to = shape.from + seconds * samples.duration();
+    if (oscillation.found) shape.period = seconds * oscillation.periods.front().period;
+    shape.spectrum = bands(study.spectrum, seconds);
+    add_wave(samples, study, oscillation.found ? oscillation.periods.front().period : study.strongest.period, seconds,
+             shape);
     shape.set_point = thinned(samples.r);
     shape.output = thinned(samples.u);
     return shape;

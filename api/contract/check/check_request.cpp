@@ -163,13 +163,13 @@ std::string tag_of(const GivenLoop& loop, std::size_t index) {
     return loop.tag && !loop.tag->empty() ? *loop.tag : "loop " + std::to_string(index + 1);
 }
 
-OrReason<ReadLoop> question_of(GivenLoop loop, const Units& units, std::size_t index) {
-    ReadLoop out;
-    out.question.tag = tag_of(loop, index);
-    add_facts(loop, out.question);
-    out.question.start = loop.epoch;
-    out.question.units = {units.time_or_default(), units.y.value_or(""), units.u.value_or("")};
-    out.question.seconds = seconds_per(units.time_or_default()).value_or(1);
+check::LoopQuestion question_of(GivenLoop loop, const Units& units, std::size_t index) {
+    check::LoopQuestion out;
+    out.tag = tag_of(loop, index);
+    add_facts(loop, out);
+    out.start = loop.epoch;
+    out.units = {units.time_or_default(), units.y.value_or(""), units.u.value_or("")};
+    out.seconds = seconds_per(units.time_or_default());
     GivenRecord given = loop.record ? std::move(*loop.record) : GivenRecord{};
     if (loop.csv) {
         given.csv = std::move(loop.csv);
@@ -178,10 +178,13 @@ OrReason<ReadLoop> question_of(GivenLoop loop, const Units& units, std::size_t i
     }
     Reader reader;
     ReadRecord read = resolve(std::move(given), units, reader);
-    if (const auto problem = reader.problem()) return {std::nullopt, reason_of(*problem)};
+    if (const auto problem = reader.problem()) {
+        out.unreadable = reason_of(*problem);
+        return out;
+    }
     out.notes = std::move(loop.notes);
     for (std::string& sentence : reading_sentences(read)) out.notes.push_back(std::move(sentence));
-    out.question.record = std::move(read.record);
+    out.record = std::move(read.record);
     return out;
 }
 

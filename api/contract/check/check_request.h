@@ -39,12 +39,6 @@ struct GivenLoop : LoopFacts {
     std::vector<std::string> notes;
 };
 
-/// A loop whose record has been read, with the findings of reading it.
-struct ReadLoop {
-    check::LoopQuestion question;
-    std::vector<std::string> notes;
-};
-
 struct CheckRequest : JobTerms {
     std::optional<std::string> name;
     std::optional<Units> units;
@@ -64,8 +58,8 @@ const Description<CheckRequest>& check_request_contract();
 /// True if a request of POST /v1/jobs is a check.
 bool is_check_request(const Json& request);
 
-/// Reads the record of the loop numbered `index`; a record that cannot be read gives the reason, a sentence.
-OrReason<ReadLoop> question_of(GivenLoop loop, const Units& units, std::size_t index);
+/// Reads the record of the loop numbered `index`.
+check::LoopQuestion question_of(GivenLoop loop, const Units& units, std::size_t index);
 
 /// The tag, or "loop 1".
 std::string tag_of(const GivenLoop& loop, std::size_t index);

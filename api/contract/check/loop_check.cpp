@@ -176,7 +176,7 @@ const Description<PerformanceFigures>& loop_performance_contract() {
                    "Variance of the error over that of the set point, where the set point moves.")
             .field("offset", &P::offset, answered(), "Mean of the error.", {.unit = "y"})
             .field("travel", &P::travel, figure(), "Of the output, ranges an hour.")
-            .field("reversals", &P::reversals, answered(), "Of the output, an hour.")
+            .field("reversals", &P::reversals, figure(), "Of the output, an hour.")
             .why_null(kNotKnown);
         return d;
     }();
@@ -498,6 +498,7 @@ check::LoopCheck read_loop_check(const Json& loop) {
     check.performance.mean_error = number_in(performance, "mean_error");
     check.performance.variability = number_in(performance, "variability");
     check.performance.independent = number_in(performance, "independent");
+    check.performance.offset = number_in(performance, "offset");
     for (const Json& period : loop.value("/oscillation/periods"_json_pointer, Json::array())) {
         check.oscillation.found = true;
         check.oscillation.periods.push_back(

@@ -12,6 +12,7 @@
 namespace tunewright::check {
 namespace {
 
+constexpr const char* kMovesWithSource = "moves-with-source";
 constexpr double kSluggishGain = 0.5;  // of the mean error: what tuning a sluggish loop is known to save, about
 constexpr double kValveGain = 0.8;     // of the oscillation's share, which ends with its cause
 
@@ -94,8 +95,9 @@ void explain_by_source(LoopCheck& check, const LoopCheck& source) {
     cause.confidence = Confidence::likely;
     cause.size = cause.jump = no_figure("Another loop makes the oscillation.");
     cause.why_open.clear();
+    std::erase_if(cause.evidence, [](const Evidence& one) { return one.code == kMovesWithSource; });
     cause.evidence.insert(cause.evidence.begin(),
-                          {"moves-with-source",
+                          {kMovesWithSource,
                            check.oscillation.periods.empty() ? 0 : check.oscillation.periods.front().period,
                            {},
                            "The loop oscillates together with " + source.tag + ", where the oscillation is made."});

@@ -109,7 +109,7 @@ std::optional<HysteresisFit> fit_hysteresis(std::span<const double> measurement,
         std::max(1.0, std::min(std::floor(double(n) / kBlocks), period / double(bank.stride()) / kBlocksPerPeriod)));
     const std::size_t used = std::min(n, 2 * kBlocks * block);
     const auto part = [&](const std::vector<double>& values) {
-        return vector(block_means(std::span(values).first(used), block));
+        return vector(block_means(std::span(values).last(used), block));
     };
     const Vector y = part(thinned), u = part(bank.output());
     if (y.size() < Eigen::Index(kBlocks / 2)) return std::nullopt;
@@ -125,7 +125,7 @@ std::optional<HysteresisFit> fit_hysteresis(std::span<const double> measurement,
         for (const double lag : kLags) try_input(lagged(v, lag), y, false, k, best);
     }
     const ValveModel& valve = bank.valves()[best.valve];
-    const auto rows = std::span(bank.output()).first(used);
+    const auto rows = std::span(bank.output()).last(used);
     const auto [low, high] = std::ranges::minmax(rows);
     HysteresisFit fit;
     const double floor = 1e-12 * variance;

@@ -325,7 +325,9 @@ ValveBank::ValveBank(std::span<const double> output, double period) {
 
 std::vector<double> ValveBank::thinned(std::span<const double> values) const {
     std::vector<double> out;
-    for (std::size_t i = 0; i < values.size() && out.size() < kMostRows; i += stride_) out.push_back(values[i]);
+    const std::size_t most = kMostRows * stride_;
+    for (std::size_t i = values.size() > most ? values.size() - most : 0; i < values.size(); i += stride_)
+        out.push_back(values[i]);
     return out;
 }
 

@@ -1,5 +1,5 @@
 // Whether a valve that sticks explains the measurement better than the output itself does: a Hammerstein model against
-// a linear one (Karra and Karim 2009, Control Engineering Practice 17, 105; Jelali 2008, Journal of Process Control 18,
+// a linear one (Karra and Karim 2009, Control Engineering Practice 17, 939; Jelali 2008, Journal of Process Control 18,
 // 632).
 //
 // On block means of about a twelfth of the period, the measurement is regressed on its own past and on the valve's
@@ -16,7 +16,8 @@
 
 namespace tunewright::check {
 
-/// Measurement and output over the same rows, thinned for a long record, and the valves' positions over them.
+/// Measurement and output over the same rows, thinned for a long record and the last ones of a very long one, and the
+/// valves' positions over them.
 class ValveBank {
 public:
     /// `period`: rows of the oscillation that is looked at.
@@ -24,6 +25,8 @@ public:
 
     /// The rows of the record from one to the next here.
     std::size_t stride() const { return stride_; }
+    /// The last rows of the record that are looked at.
+    std::size_t rows() const { return stride_ * output_.size(); }
     const std::vector<double>& output() const { return output_; }
     const std::vector<ValveModel>& valves() const { return valves_; }
     /// The position of valve k, computed when it is first asked for.

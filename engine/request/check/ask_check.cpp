@@ -42,27 +42,26 @@ check::PlantCheck judged_together(std::vector<CheckedLoop>& loops, bool cluster)
 Expected<CheckResult> ask_check(const CheckQuestion& question, const RunControl& control) {
     const std::size_t n = question.loops.size();
     std::vector<std::optional<CheckedLoop>> done(n);
-    std::vector<std::optional<Error>> failed(n);
     LoopsProgress progress(control, n);
     parallel_for(control.spread, static_cast<int>(n), [&](int i) {
         const auto at = static_cast<std::size_t>(i);
         if (control.stop.stop_requested()) return;
         auto found = check::check_loop(question.loops[at], control.stop);
-        if (found) {
-            done[at].emplace(CheckedLoop{std::move(*found), {}});
-            if (question.settings) done[at]->cure = cure_of(question.loops[at], *done[at], control);
+        if (!found) {
+            if (found.error().kind != ErrorKind::cancelled)
+                done[at].emplace(
+                    CheckedLoop{check::unreadable_loop(question.loops[at].tag, found.error().message), {}});
         } else {
-            failed[at] = found.error();
+            CheckedLoop loop{std::move(*found), {}};
+            if (question.settings) loop.cure = cure_of(question.loops[at], loop, control);
+            // A stop during the cure leaves the loop as one that was not reached.
+            if (!question.settings || !control.stop.stop_requested()) done[at].emplace(std::move(loop));
         }
         progress.one_done();
     });
     CheckResult result;
     std::size_t reached = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        if (failed[i] && failed[i]->kind != ErrorKind::cancelled) {
-            failed[i]->where = "loops/" + std::to_string(i) + (failed[i]->where.empty() ? "" : "/" + failed[i]->where);
-            return *failed[i];
-        }
         reached += done[i] ? 1 : 0;
         result.loops.push_back(
             done[i] ? std::move(*done[i])

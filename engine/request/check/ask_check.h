@@ -30,7 +30,7 @@ struct CheckResult {
 /// The judgement of all loops together, which may change the cause of one that another explains.
 check::PlantCheck judged_together(std::vector<CheckedLoop>& loops, bool cluster);
 
-/// Errors: those of check_loop(), with the loop's place before `where`; a stop before the first loop.
+/// A loop whose question is at fault is answered as one that could not be read. Error: a stop before the first loop.
 Expected<CheckResult> ask_check(const CheckQuestion& question, const RunControl& control);
 
 }  // namespace tunewright

@@ -22,7 +22,7 @@ struct LoopCure {
     Figure error_ratio;                      ///< mean magnitude of the error in the recorded time, new over old
     std::optional<TestPlan> test;            ///< without settings
     std::optional<check::CycleStops> valve;  ///< with a sticking valve, instead of all but `today`
-    std::string detail;                      ///< one sentence: what to do, or why the record does not suffice
+    std::string detail;  ///< one sentence: what the settings hold, or why the record does not suffice
 };
 
 /// Empty where neither tuning nor a valve is the cause. Identification and design take up to some seconds.

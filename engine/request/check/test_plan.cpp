@@ -6,11 +6,12 @@
 namespace tunewright {
 namespace {
 
-constexpr double kGainError = 0.1;  // standard error of the gain, relative
-constexpr int kSteps = 4;           // up, down, up, down: a drift then does not count as gain
-constexpr double kGridSteps = 5;    // least size, of the measurement's or the output's grid
-constexpr double kHoldPeriods = 2;  // of an oscillation: the slowest motion that is known
-constexpr double kHoldLags = 5;     // of the lag at which the error's correlation has fallen to a third
+constexpr double kGainError = 0.1;       // standard error of the gain, relative
+constexpr int kSteps = 4;                // up, down, up, down: a drift then does not count as gain
+constexpr double kErrorOfSteps = 0.935;  // sqrt(14)/4
+constexpr double kGridSteps = 5;         // least size, of the measurement's or the output's grid
+constexpr double kHoldPeriods = 2;       // of an oscillation: the slowest motion that is known
+constexpr double kHoldLags = 5;          // of the lag at which the error's correlation has fallen to a third
 constexpr double kLeastHoldRows = 20;
 
 /// The slowest motion of the loop that the record shows.
@@ -42,11 +43,13 @@ TestPlan plan_test(const check::LoopCheck& check) {
     plan.steps = kSteps;
     plan.hold = hold_of(check);
     plan.duration = (kSteps + 1) * plan.hold;
-    // The level after a step is the mean of its second half; each of the steps compares two of them.
-    const double rows = std::max(2.0, 0.5 * plan.hold / check.quality.sample_time);
+    // The level after a step is the mean of its second half. The gain follows from levels l1 - 2 l2 + 2 l3 - 2 l4 + l5,
+    // over 4: 0.94 of the error of one.
+    const double half = 0.5 * plan.hold, rows = std::max(2.0, half / check.quality.sample_time);
+    const double independent = std::max(1.0, check.performance.independent * half / check.quality.duration);
     const double level_error =
-        std::hypot(check.quality.noise / std::sqrt(rows), check.performance.variability / std::sqrt(double(kSteps)));
-    const double in_y = std::max(level_error * std::sqrt(2.0 / kSteps) / kGainError, kGridSteps * check.quality.y_step);
+        std::hypot(check.quality.noise / std::sqrt(rows), check.performance.variability / std::sqrt(independent));
+    const double in_y = std::max(kErrorOfSteps * level_error / kGainError, kGridSteps * check.quality.y_step);
     const double y_range = range_of(check.trend.y), u_range = range_of(check.trend.u);
     const bool set_point = plan.kind == TestPlan::Kind::set_point_steps;
     // In manual the gain is unknown: output and measurement are taken to move by like shares of what the record shows.

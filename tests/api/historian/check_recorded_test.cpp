@@ -84,5 +84,22 @@ TEST(JoinedRequests, AreOneRequestWithAllLoops) {
         EXPECT_EQ(std::get<Problem>(joined_requests(bad)).status, 400) << bad;
 }
 
+/// Loops of one answer have one unit of time.
+TEST(JoinedRequests, DifferingMembersAreRefused) {
+    for (const char* second : {R"({"loops": [], "units": {"time": "min"}})", R"({"loops": [], "cluster": true})"}) {
+        const auto both = joined_requests(std::string("{\"loops\": [], \"cluster\": false}\n") + second);
+        ASSERT_TRUE(std::holds_alternative<Problem>(both)) << second;
+        EXPECT_EQ(std::get<Problem>(both).status, 422);
+        EXPECT_THAT(std::get<Problem>(both).detail, testing::HasSubstr("Line 2"));
+    }
+}
+
+/// A file of measurements without an output.
+TEST(CheckRecorded, FilesWithoutALoopAreAnError) {
+    const JobOutcome outcome = check_recorded({}, {});
+    EXPECT_EQ(outcome.status, JobOutcome::Status::failed);
+    EXPECT_THAT(outcome.error_json, testing::HasSubstr("hold no loop"));
+}
+
 }  // namespace
 }  // namespace tunewright::api

@@ -1210,8 +1210,9 @@ export type components = {
       mean_error: number;
       independent: number;
       following: number | null;
-      travel: number;
-      reversals: number;
+      offset: number;
+      travel: number | null;
+      reversals: number | null;
       why_null?: {
         [key: string]: string;
       };

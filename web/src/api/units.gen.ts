@@ -42,6 +42,7 @@ export const UNITS = {
   LoopPerformance: {
     variability: "y",
     mean_error: "y",
+    offset: "y",
   },
   LoopPeriod: {
     period: "time",

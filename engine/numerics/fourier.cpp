@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unsupported/Eigen/FFT>
 
 #include "engine/numerics/statistics.h"
@@ -10,9 +11,21 @@
 namespace tunewright {
 namespace {
 
-Eigen::FFT<double> transform() {
-    Eigen::FFT<double> fft;
-    fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+constexpr std::size_t kMostKept = 1 << 19;  // values of all lengths whose factors are kept: 8 MB
+
+/// Transforms of length n. The trigonometric factors of the last lengths are kept for the thread: they cost as much as
+/// a transform.
+Eigen::FFT<double>& transform(std::size_t n) {
+    thread_local Eigen::FFT<double> fft;
+    thread_local std::vector<std::size_t> lengths;
+    if (std::ranges::find(lengths, n) == lengths.end()) {
+        if (std::accumulate(lengths.begin(), lengths.end(), n) > kMostKept) {
+            fft = {};
+            lengths.clear();
+        }
+        fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+        lengths.push_back(n);
+    }
     return fft;
 }
 
@@ -42,7 +55,7 @@ std::vector<std::complex<double>> half_spectrum(std::span<const double> x) {
     std::vector<std::complex<double>> X;
     if (x.size() < 2) return {x.begin(), x.end()};
     const std::vector<double> in(x.begin(), x.end());
-    transform().fwd(X, in);
+    transform(in.size()).fwd(X, in);
     return X;
 }
 
@@ -53,7 +66,7 @@ std::vector<double> series_of(std::span<const std::complex<double>> X, std::size
         return x;
     }
     const std::vector<std::complex<double>> in(X.begin(), X.end());
-    transform().inv(x, in, static_cast<Eigen::Index>(n));
+    transform(n).inv(x, in, static_cast<Eigen::Index>(n));
     x.resize(n);
     return x;
 }

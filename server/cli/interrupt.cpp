@@ -20,17 +20,18 @@ Interrupt::Interrupt() {
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     watcher_ = std::jthread([this](const std::stop_token& ended) {
         const sigset_t waited = interrupt_signal();
-        constexpr timespec kPause{0, 100'000'000};
-        while (!ended.stop_requested()) {
-            if (sigtimedwait(&waited, nullptr, &kPause) != SIGINT) continue;
-            stop_.request_stop();
-            pthread_sigmask(SIG_UNBLOCK, &waited, nullptr);
-            return;
-        }
+        int signal = 0;
+        sigwait(&waited, &signal);
+        if (ended.stop_requested()) return;
+        stop_.request_stop();
+        pthread_sigmask(SIG_UNBLOCK, &waited, nullptr);
     });
 }
 
 Interrupt::~Interrupt() {
+    watcher_.request_stop();
+    // Wakes the watcher, which is the only thread that gets this signal.
+    if (!stop_.stop_requested()) pthread_kill(watcher_.native_handle(), SIGINT);
     watcher_ = {};
     const sigset_t signals = interrupt_signal();
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);

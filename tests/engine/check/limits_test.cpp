@@ -1,5 +1,5 @@
-// A loop whose output or measurement does not move, is at a limit, or is not recorded: what a check says of it, and that
-// every figure is finite or has a reason.
+// A loop whose output or measurement does not move, is at a limit, or is not recorded: what a check says of it, and
+// that every figure is finite or has a reason.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,7 +50,9 @@ TEST(CheckLimits, AnOutputBeyondItsRangeIsAtTheLimit) {
 }
 
 TEST(CheckLimits, ASmallExcessOfPercentIsNoOtherUnit) {
-    const LoopCheck check = answer_about(record_with([](int i) { return i == 5 ? -0.1 : i < 500 ? 100.0 : 40.0 + i * i % 7; }));
+    const LoopCheck check = answer_about(record_with([](int i) {
+        return i == 5 ? -0.1 : i < 500 ? 100.0 : 40.0 + i * i % 7;
+    }));
     EXPECT_NEAR(check.service.saturated_high, 0.5, 0.01);
     EXPECT_EQ(check.cause.verdict, Verdict::saturation);
 }
@@ -96,8 +98,7 @@ TEST(CheckLimits, WithoutAUnitOfTimeNothingIsSaidOfAnHour) {
 
 /// Records that no diagnosis should meet: nothing crashes, and every figure is finite or has a reason.
 TEST(CheckLimits, OddRecordsAreAnswered) {
-    for (const double size : {1e-300, 1e300})
-        answer_about(record_with([size](int i) { return size * (i % 5); }));
+    for (const double size : {1e-300, 1e300}) answer_about(record_with([size](int i) { return size * (i % 5); }));
     answer_about(record_with([](int) { return 1.0; }, 2));
     answer_about(record_with([](int) { return 1.0; }, 0));
     Record same_time = record_with([](int i) { return i % 5; });

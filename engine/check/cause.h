@@ -4,7 +4,7 @@
 #include <stop_token>
 
 #include "engine/check/loop_check.h"
-#include "engine/check/oscillation.h"
+#include "engine/check/oscillation/oscillation.h"
 #include "engine/check/output_range.h"
 #include "engine/check/samples.h"
 #include "engine/check/service.h"

@@ -7,7 +7,7 @@
 #include "engine/check/cause.h"
 #include "engine/check/drawing.h"
 #include "engine/check/movement.h"
-#include "engine/check/oscillation.h"
+#include "engine/check/oscillation/oscillation.h"
 #include "engine/check/pace/given_law.h"
 #include "engine/check/record_quality.h"
 #include "engine/check/samples.h"

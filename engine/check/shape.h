@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/check/loop_check.h"
-#include "engine/check/oscillation.h"
+#include "engine/check/oscillation/oscillation.h"
 #include "engine/check/samples.h"
 
 namespace tunewright::check {

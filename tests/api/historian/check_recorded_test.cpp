@@ -90,7 +90,6 @@ TEST(JoinedRequests, DifferingMembersAreRefused) {
         const auto both = joined_requests(std::string("{\"loops\": [], \"cluster\": false}\n") + second);
         ASSERT_TRUE(std::holds_alternative<Problem>(both)) << second;
         EXPECT_EQ(std::get<Problem>(both).status, 422);
-        EXPECT_THAT(std::get<Problem>(both).detail, testing::HasSubstr("Line 2"));
     }
 }
 
@@ -98,7 +97,7 @@ TEST(JoinedRequests, DifferingMembersAreRefused) {
 TEST(CheckRecorded, FilesWithoutALoopAreAnError) {
     const JobOutcome outcome = check_recorded({}, {});
     EXPECT_EQ(outcome.status, JobOutcome::Status::failed);
-    EXPECT_THAT(outcome.error_json, testing::HasSubstr("hold no loop"));
+    EXPECT_EQ(Json::parse(outcome.error_json)["status"], 422);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "engine/check/pace/loop_law.h"
-#include "engine/check/peak_search.h"
+#include "engine/check/oscillation/peak_search.h"
 #include "engine/check/valve/valve_model.h"
 #include "tests/test_data.h"
 

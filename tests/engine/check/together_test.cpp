@@ -49,7 +49,8 @@ TEST(ChecksTogether, TheSourceIsTheOneThatLeads) {
     ASSERT_EQ(plant.clusters.size(), 1U);
     EXPECT_EQ(plant.clusters[0].source, 0U);
     EXPECT_EQ(loops[1].cause.verdict, Verdict::external);
-    EXPECT_NE(loops[1].action.detail.find("FIC1"), std::string::npos);
+    EXPECT_EQ(loops[1].action.code, ActionCode::find_source);
+    EXPECT_EQ(std::ranges::find(plant.ranking, 1U, &Rank::loop)->after, 0U);
 }
 
 TEST(ChecksTogether, WithoutACommonTimeNoSourceIsNamed) {

@@ -1,6 +1,6 @@
-#include "engine/check/oscillation.h"
+#include "engine/check/oscillation/oscillation.h"
 
-#include "engine/check/peak_search.h"
+#include "engine/check/oscillation/peak_search.h"
 #include "engine/check/thresholds.h"
 #include "engine/numerics/fourier.h"
 #include "engine/numerics/statistics.h"

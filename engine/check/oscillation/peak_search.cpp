@@ -1,4 +1,4 @@
-#include "engine/check/peak_search.h"
+#include "engine/check/oscillation/peak_search.h"
 
 #include <algorithm>
 #include <cmath>

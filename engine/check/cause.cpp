@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/check/oscillation/peak_search.h"
 #include "engine/check/pace/loop_speed.h"
 #include "engine/check/pace/set_point_response.h"
-#include "engine/check/oscillation/peak_search.h"
 #include "engine/check/thresholds.h"
 #include "engine/check/valve/hysteresis.h"
 #include "engine/check/valve/valve_fit.h"

@@ -5,8 +5,8 @@
 #include <map>
 #include <sstream>
 
-#include "engine/check/pace/loop_law.h"
 #include "engine/check/oscillation/peak_search.h"
+#include "engine/check/pace/loop_law.h"
 #include "engine/check/valve/valve_model.h"
 #include "tests/test_data.h"
 

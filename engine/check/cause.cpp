@@ -31,6 +31,7 @@ constexpr double kPerhapsBand = 0.2;
 // A linear loop with a dead time that is resolved explains the record: no dead band is needed.
 constexpr double kInformed = 35, kQuickByDeadTime = 0.15, kLeastPaceSeen = 0.22, kMostPaceSeen = 0.7;
 constexpr double kSlowCrossover = 0.7, kForward = 0.6, kBeyondRounding = 3;
+constexpr double kResolvedRows = 1.6;                    // of the fit, in its dead time: below it the rows decide
 constexpr double kCyclesInTi[] = {3, 6};                 // a limit cycle of a PI loop lasts some integral times
 constexpr double kShortestCycle = 8, kFewestCycles = 6;  // rows; cycles in the record
 constexpr std::size_t kCrossingBlocks = 200;
@@ -76,7 +77,8 @@ private:
 
     std::optional<Cause> by_service() {
         const double frozen = q_.service.measurement_still, held = q_.service.output_still;
-        const double manual = std::max(held, q_.service.manual.value_or(0));
+        // A mode that is recorded says more than an output that rests.
+        const double manual = q_.service.manual.value_or(held);
         const bool y_rests = !(deviation(q_.samples.y) > 0), u_rests = !(deviation(q_.samples.u) > 0);
         if (y_rests && u_rests)
             return open(
@@ -87,6 +89,12 @@ private:
             add("measurement-still", frozen, kFrozenShare,
                 "The measurement stands still for " + percent(frozen) + " of the time while the output moves.");
             return cause(Verdict::frozen, Confidence::sure);
+        }
+        if (const double longest = q_.service.longest_still; longest >= kFrozenRun && manual < kHeldShare) {
+            add("measurement-still", longest, kFrozenRun,
+                "The measurement stands still for " + percent(longest) +
+                    " of the time in one piece while the output moves, and never nearly as long otherwise.");
+            return cause(Verdict::frozen, Confidence::likely, {Verdict::stiction, Verdict::saturation});
         }
         const bool at_limit = q_.service.saturated_low + q_.service.saturated_high >= kSaturatedShare;
         if ((u_rests && !at_limit) || manual >= kHeldShare) {
@@ -113,20 +121,27 @@ private:
             for (const Peak& more : {other, in_output.strongest(kSlowTilt), in_error.strongest(kSlowTilt)})
                 add_candidate({more.period, more.line_period, 0});
         }
-        if (peak_.regularity > kRegular)
+        if (peak_.regularity > kRegular && peak_.cycles >= kFewestCyclesTold)
             add("regularity", peak_.regularity, kRegular,
                 std::string(same        ? "Output and error oscillate"
                             : by_output ? "The output oscillates"
                                         : "The error oscillates") +
                     " with a period of " + time(peak_.period) + " and a regularity of " +
-                    figure_text(peak_.regularity) + "; above " + figure_text(kRegular) + " is regular.");
+                    figure_text(peak_.regularity) + "; above " + text(kRegular) + " is regular.");
     }
 
     std::optional<Cause> by_limits() {
         const double at_limit = q_.service.saturated_low + q_.service.saturated_high;
         if (at_limit < kSaturatedShare) return std::nullopt;
+        const bool upper = q_.service.saturated_high >= q_.service.saturated_low;
+        const double at_one = std::max(q_.service.saturated_low, q_.service.saturated_high);
         add("at-limit", at_limit, kSaturatedShare,
-            "The output is at a limit for " + percent(at_limit) + " of the time.");
+            std::string("The output is at its ") + (upper ? "upper" : "lower") + " limit, " +
+                q_.units.u_text(upper ? q_.u_range.high : q_.u_range.low) + ", for " + percent(at_one) +
+                " of the time" +
+                (at_limit - at_one >= kSaturatedShare ? ", and at the other one for " + percent(at_limit - at_one)
+                                                      : "") +
+                ".");
         if (peak_.regularity >= 2.5 && peak_.cycles >= 10 && limit_visits() >= 0.25 * peak_.cycles &&
             peak_.persistence > 0.5) {
             Cause out = cause(Verdict::tight, Confidence::likely, {Verdict::saturation});
@@ -308,12 +323,14 @@ private:
     /// Moves of the set point show by themselves how quick the loop is.
     std::optional<Cause> by_set_point() {
         const auto response = set_point_response(q_.samples);
-        if (!response || response->dead_time < 2 * q_.samples.step || response->noise > kClearResponse)
-            return std::nullopt;
-        const double ratio = response->rise / response->dead_time;
+        if (!response || response->noise > kClearResponse) return std::nullopt;
+        // A dead time that the rows do not resolve is at most two of them.
+        const bool resolved = response->dead_time >= 2 * q_.samples.step;
+        const double ratio = response->rise / std::max(response->dead_time, 2 * q_.samples.step);
+        if (!resolved && ratio < kSluggishRise) return std::nullopt;
         add("set-point-response", ratio, kSluggishRise,
             "After " + counted(response->moves, "move") + " of the set point the measurement needs " +
-                q_.units.time_text(response->rise) + " to 63 %, " + figure_text(ratio) +
+                q_.units.time_text(response->rise) + " to 63 %, " + (resolved ? "" : "at least ") + figure_text(ratio) +
                 " times the time until it begins; a loop tuned for its dead time needs 1 to 2 times.");
         quick_after_moves_ = ratio < kSluggishRise || smooths_flows();
         if (quick_after_moves_) return std::nullopt;
@@ -367,12 +384,12 @@ private:
         const bool by_dead_time =
             found.by_dead_time >= kSurelySlow && noise_std(q_.samples.u) >= kBeyondRounding * q_.quality.u_step;
         return (by_crossover || by_dead_time) && found.load_steps > 0 && found.forward >= kForward &&
-               found.dead_time > 0.8 * found.resolution;
+               found.dead_time > kResolvedRows * found.resolution;
     }
 
     Cause by_speed() {
         const auto& found = speed();
-        if (found && found->pace > 0) {
+        if (found && found->pace > 0 && (found->information >= kInformed || found->slow >= kSlow)) {
             add("pace", found->pace, {},
                 "Crossover frequency times dead time is about " + figure_text(found->pace) +
                     ": 0.5 is quick, below 0.19 the loop is slower than its dead time allows.");

@@ -88,6 +88,7 @@ struct ServiceShares {
     double saturated_low = 0, saturated_high = 0;
     double output_still = 0;       ///< output and set point constant while the measurement moves
     double measurement_still = 0;  ///< measurement constant while the output moves
+    double longest_still = 0;      ///< the same in one piece, if it is far longer than the other pieces
 };
 
 /// One oscillation of the error.

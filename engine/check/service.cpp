@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "engine/check/thresholds.h"
+#include "engine/numerics/statistics.h"
 
 namespace tunewright::check {
 namespace {
+
+constexpr double kFarLonger = 50;  // than the median run of equal values
 
 double share(const std::vector<char>& marks) {
     return marks.empty() ? 0 : static_cast<double>(std::ranges::count(marks, 1)) / static_cast<double>(marks.size());
@@ -24,16 +27,27 @@ bool should_have_moved(const Samples& samples, const EqualRun& run, double gain,
     return std::abs(gain) * (high - low) >= kHeldSteps * step;
 }
 
-/// The share of samples in long rests of one value while the other one moves.
-double still_share(const std::vector<double>& still, const std::vector<double>& moving) {
-    std::size_t rows = 0;
-    for (const EqualRun& run : equal_runs(still)) {
+struct StillShares {
+    double all = 0;      ///< of the samples, in long rests of one value while the other one moves
+    double longest = 0;  ///< in one rest that is far longer than the usual ones; 0: none is
+};
+
+StillShares still_shares(const std::vector<double>& still, const std::vector<double>& moving) {
+    std::size_t rows = 0, longest = 0;
+    const auto runs = equal_runs(still);
+    for (const EqualRun& run : runs) {
         if (run.length < still_rows(still.size())) continue;
         const auto first = moving.begin() + static_cast<std::ptrdiff_t>(run.begin);
         const auto [low, high] = std::minmax_element(first, first + static_cast<std::ptrdiff_t>(run.length));
-        if (*high > *low) rows += run.length;
+        if (!(*high > *low)) continue;
+        rows += run.length;
+        longest = std::max(longest, run.length);
     }
-    return static_cast<double>(rows) / static_cast<double>(std::max<std::size_t>(1, still.size()));
+    std::vector<double> lengths;
+    for (const EqualRun& run : runs) lengths.push_back(double(run.length));
+    const bool unusual = !lengths.empty() && double(longest) > kFarLonger * median(std::move(lengths));
+    const auto count = static_cast<double>(std::max<std::size_t>(1, still.size()));
+    return {double(rows) / count, unusual ? double(longest) / count : 0};
 }
 
 }  // namespace
@@ -67,7 +81,9 @@ ServiceShares service_of(const Samples& samples, const OutputRange& range, doubl
     shares.saturated_low = low;
     shares.saturated_high = high;
     shares.output_still = share(held_output(samples, range, u_step, law));
-    shares.measurement_still = still_share(samples.y, samples.u);
+    const StillShares still = still_shares(samples.y, samples.u);
+    shares.measurement_still = still.all;
+    shares.longest_still = still.longest;
     if (samples.automatic.empty()) {
         shares.automatic = no_figure("The record has no column of the mode.");
         shares.manual = no_figure("The record has no column of the mode.");

@@ -26,6 +26,8 @@ inline constexpr double kLeastShare = 0.05;  ///< of the error's variance: a sma
 // Causes that the record shows by itself.
 inline constexpr double kHeldShare = 0.3;        ///< of the time with an output that nobody moves: in manual
 inline constexpr double kFrozenShare = 0.5;      ///< of the time with a measurement that stands still
+inline constexpr double kFrozenRun = 0.1;        ///< of the time in one stand-still, far longer than the others
+inline constexpr double kFewestCyclesTold = 6;   ///< in the record: fewer are moves, not an oscillation
 inline constexpr double kSaturatedShare = 0.05;  ///< of the time at a limit
 inline constexpr double kCoarseStep = 0.5;       ///< of the measurement's deviation: a step that hides everything finer
 

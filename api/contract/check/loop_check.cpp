@@ -56,6 +56,10 @@ const Description<ServiceShares>& service_contract() {
             .field("saturated_low", &S::saturated_low, answered(), "Output at its lower limit.")
             .field("saturated_high", &S::saturated_high, answered(), "Output at its upper limit.")
             .field("output_still", &S::output_still, answered(), "Output at rest, away from its limits.")
+            .field(
+                "longest_still", &S::longest_still, answered(),
+                "Share in one piece with a measurement that stands still while the output moves, if it is far longer "
+                "than the other pieces; else 0.")
             .field("measurement_still", &S::measurement_still, answered(),
                    "Measurement at rest while the output moves.")
             .why_null(kNotKnown);

@@ -42,7 +42,8 @@ OscillationStudy study_oscillation(const Samples& samples) {
         if (!(f > 0)) break;
         const Period found = search.oscillation_about(f), period = in_time(found, search, step);
         if (found.share < kLeastShare) break;
-        if (period.regularity > kRegular)
+        const bool told = samples.duration() >= kFewestCyclesTold * period.period;
+        if (period.regularity > kRegular && told)
             study.found.periods.push_back(period);
         else if (study.found.periods.empty())
             study.strongest = period;

@@ -14,6 +14,7 @@ namespace tunewright::check {
 namespace {
 
 constexpr double kSamePeriod = 0.04;       // relative
+constexpr double kFewestCycles = 10;       // in a record: fewer of two loops agree by chance
 constexpr double kSameWave = 0.7;          // of the correlation at the best lag, in each part
 constexpr double kSamePhase = 0.1;         // of the period
 constexpr std::size_t kParts = 6;          // of the common time
@@ -210,8 +211,11 @@ void find_source(std::span<const LoopCheck* const> loops, Cluster& cluster) {
 /// Loops that oscillate, by period.
 std::vector<std::size_t> by_period(std::span<const LoopCheck* const> loops) {
     std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < loops.size(); ++i)
-        if (loops[i]->shape.period > 0 && loops[i]->shape.wave.size() >= 2) order.push_back(i);
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+        const Shape& shape = loops[i]->shape;
+        if (shape.period > 0 && shape.wave.size() >= 2 && shape.to - shape.from >= kFewestCycles * shape.period)
+            order.push_back(i);
+    }
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return loops[i]->shape.period; });
     return order;
 }
@@ -244,7 +248,11 @@ std::vector<Cluster> clusters_of(std::span<const LoopCheck* const> loops) {
     }
     std::vector<Cluster> all(loops.size());
     for (const std::size_t i : order) all[root(i)].loops.push_back(i);
-    std::erase_if(all, [](const Cluster& cluster) { return cluster.loops.size() < 2; });
+    std::erase_if(all, [&](const Cluster& cluster) {
+        const bool all_healthy = std::ranges::all_of(
+            cluster.loops, [&](std::size_t i) { return loops[i]->cause.verdict == Verdict::healthy; });
+        return cluster.loops.size() < 2 || all_healthy;
+    });
     for (Cluster& cluster : all) {
         double sum = 0;
         for (const std::size_t i : cluster.loops) sum += std::log(loops[i]->shape.period);

@@ -12,8 +12,8 @@
 namespace tunewright {
 namespace {
 
-constexpr std::size_t kMostRows = 3000;  // of a record that settings are designed from
-constexpr double kRowsPerTi = 20;        // at least: the loop's own moves stay resolved
+constexpr std::size_t kMostRows = 6000;  // of a record that settings are designed from
+constexpr double kClearlyMore = 1.001;   // of the set point's moves: rounding finds no better part
 
 std::optional<IdealPid> ideal_pid(const ParallelPid& given) {
     const auto ideal = to_ideal(given);
@@ -60,24 +60,35 @@ LoopCure with_settings(const TuningResult& result, const TuningEntry& entry, std
     return cure;
 }
 
-/// Every few rows of a long record: identification and replay cost by the row, and a loop moves slowly against them.
-Record thinned(const Record& record, const check::LoopCheck& check) {
-    const double rows_of_Ti = check.law.Ti / std::max(check.quality.sample_time, 1e-300);
-    const double most = std::isfinite(rows_of_Ti) ? std::floor(rows_of_Ti / kRowsPerTi) : 1;
-    const double wanted = std::ceil(double(record.t.size()) / double(kMostRows));
-    const auto every = static_cast<std::size_t>(std::max(1.0, std::min(most, wanted)));
-    if (every == 1) return record;
-    Record out = record;
-    const auto thin = [every](auto& values) {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < values.size(); i += every) values[kept++] = values[i];
-        values.resize(kept);
+/// The part of a long record in which the set point moves most, else its end: identification and replay cost by the
+/// row.
+Record telling_part(const Record& record) {
+    const std::size_t n = record.t.size();
+    if (n <= kMostRows) return record;
+    std::size_t end = n;
+    double most = 0, moved = 0;
+    const auto move = [&](std::size_t i) {
+        return i > 0 && i < record.r.size() ? std::abs(record.r[i] - record.r[i - 1]) : 0;
     };
-    thin(out.t);
-    thin(out.y);
-    thin(out.u);
-    thin(out.r);
-    thin(out.automatic);
+    for (std::size_t i = 0; i < n; ++i) {
+        moved += move(i);
+        if (i >= kMostRows) moved -= move(i - kMostRows);
+        if (i + 1 >= kMostRows && moved > kClearlyMore * most) {
+            most = moved;
+            end = i + 1;
+        }
+    }
+    Record out = record;
+    const auto cut = [&](auto& values) {
+        if (values.size() != n) return;
+        values.erase(values.begin() + std::ptrdiff_t(end), values.end());
+        values.erase(values.begin(), values.begin() + std::ptrdiff_t(end - kMostRows));
+    };
+    cut(out.t);
+    cut(out.y);
+    cut(out.u);
+    cut(out.r);
+    cut(out.automatic);
     return out;
 }
 
@@ -100,7 +111,7 @@ std::optional<LoopCure> cure_of(const check::LoopQuestion& question, const check
         return with_test(check, "The cause is open, so nothing is designed.", std::nullopt);
     if (check.action.code != check::ActionCode::retune) return std::nullopt;
     TuningRequest request;
-    request.record = thinned(question.record, check);
+    request.record = telling_part(question.record);
     if (question.u_range) request.record->u_limits = question.u_range;
     request.evaluate.points = 0;
     std::optional<IdealPid> today;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/check/thresholds.h"
+
 namespace tunewright {
 namespace {
 
@@ -13,6 +15,7 @@ constexpr double kGridSteps = 5;         // least size, of the measurement's or 
 constexpr double kHoldPeriods = 2;       // of an oscillation: the slowest motion that is known
 constexpr double kHoldLags = 5;          // of the lag at which the error's correlation has fallen to a third
 constexpr double kLeastHoldRows = 20;
+constexpr double kHoldIntegralTimes = 10;
 
 /// The slowest motion of the loop that the record shows.
 double hold_of(const check::LoopCheck& check) {
@@ -25,6 +28,9 @@ double hold_of(const check::LoopCheck& check) {
         hold = std::max(hold, kHoldLags * r.x[k]);
         break;
     }
+    // A loop settles within some integral times; slower motions are moves of the set point or of the load.
+    if (check.law.explained >= check::kKnownLaw && std::isfinite(check.law.Ti))
+        hold = std::min(hold, std::max(kLeastHoldRows * check.quality.sample_time, kHoldIntegralTimes * check.law.Ti));
     return hold;
 }
 

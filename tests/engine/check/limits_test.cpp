@@ -67,6 +67,44 @@ TEST(CheckLimits, TheLimitsOfAnotherUnitAreUnknown) {
     EXPECT_EQ(resting.cause.verdict, Verdict::manual);
 }
 
+/// A controller's own limit, below 100 %, and one in another unit: the output rests there again and again.
+TEST(CheckLimits, AnOutputThatRestsAgainAndAgainIsAtALimitOfItsOwn) {
+    const auto visits = [](double limit, double scale) {
+        return record_with([=](int i) { return i % 250 < 100 ? limit : limit - scale * (1 + (i * i) % 7); });
+    };
+    for (const auto& [limit, scale] : {std::pair{80.0, 1.0}, {20.0, 0.1}}) {
+        const LoopCheck check = answer_about(visits(limit, scale));
+        EXPECT_NEAR(check.service.saturated_high, 0.4, 0.01) << limit;
+        EXPECT_TRUE(check.cause.verdict == Verdict::saturation || check.cause.verdict == Verdict::tight);
+    }
+}
+
+/// The mode says more than an output that rests.
+TEST(CheckLimits, ALoopInAutomaticIsNotInManual) {
+    Record record = record_with([](int i) { return i < 500 ? 80.0 : 60.0 + (i * i) % 7; });
+    record.automatic.assign(record.t.size(), true);
+    EXPECT_EQ(answer_about(record).cause.verdict, Verdict::saturation);
+    record.automatic.assign(record.t.size(), false);
+    EXPECT_EQ(answer_about(record).cause.verdict, Verdict::manual);
+}
+
+/// One long stand-still of the measurement while the output moves, also far below half of the time.
+TEST(CheckLimits, AMeasurementThatFreezesForAWhileIsFrozen) {
+    int found = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        LoopSetUp s;
+        s.y_grid = 0;
+        s.band = seed % 2 ? 3 : 0;
+        s.jump = seed % 2 ? 2 : 0;
+        Record record = simulated(s, seed);
+        const std::size_t from = 900, to = from + 400 + 60 * seed;
+        for (std::size_t i = from; i < to; ++i) record.y[i] = record.y[from];
+        for (std::size_t i = from + 1; i < to; ++i) record.u[i] = record.u[i - 1] + 0.02 * (record.r[i] - record.y[i]);
+        found += answer_about(record, {{0, 100}}).cause.verdict == Verdict::frozen ? 1 : 0;
+    }
+    EXPECT_GE(found, 9);
+}
+
 TEST(CheckLimits, AUnitThatIsShutDownIsNoFrozenSensor) {
     Record record = record_with([](int) { return 30.0; });
     for (double& y : record.y) y = 50;

@@ -1,0 +1,93 @@
+#include "engine/blocks/block_diagram.h"
+
+#include <Eigen/LU>
+#include <utility>
+
+namespace tunewright {
+namespace {
+
+LinearPlant transfer_function(std::vector<double> num, std::vector<double> den) {
+    return std::move(*LinearPlant::make(Plant(TransferFunction{.num = std::move(num), .den = std::move(den)})));
+}
+
+/// Coefficients of 1/F(s) in descending powers.
+std::vector<double> filter_denominator(const Filter& filter) {
+    switch (filter.type) {
+        case FilterType::none: return {1};
+        case FilterType::measurement_second_order: return {filter.Tf * filter.Tf / 2, filter.Tf, 1};
+        default: return {filter.Tf, 1};
+    }
+}
+
+std::complex<double> denominator(const LinearPlant& plant, std::complex<double> s) {
+    std::complex<double> product = 1;
+    for (int i = 0; i < plant.integrators(); ++i) product *= s;
+    for (const auto pole : plant.poles()) product *= s - pole;
+    return product;
+}
+
+}  // namespace
+
+void BlockDiagram::add(int from, int to, double gain, double L) {
+    if (gain == 0) return;
+    add(from, to, std::move(*LinearPlant::make(Plant(Fopdt{.K = gain, .T = 0, .L = L}))));
+}
+
+int BlockDiagram::order() const {
+    int sum = 0;
+    for (const Block& block : blocks_) sum += block.plant.order();
+    return sum;
+}
+
+double BlockDiagram::total_dead_time() const {
+    double sum = 0;
+    for (const Block& block : blocks_) sum += block.plant.dead_time();
+    return sum;
+}
+
+double BlockDiagram::time_scale() const {
+    double sum = 0;
+    for (const Block& block : blocks_) sum += block.plant.time_scale();
+    return sum;
+}
+
+Eigen::MatrixXcd BlockDiagram::connections(std::complex<double> s) const {
+    Eigen::MatrixXcd M = Eigen::MatrixXcd::Zero(signals_, signals_);
+    for (const Block& block : blocks_) M(block.to, block.from) += block.plant.at(s);
+    return M;
+}
+
+Eigen::VectorXcd BlockDiagram::response(std::complex<double> s, int input) const {
+    const Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(signals_, signals_) - connections(s);
+    return A.partialPivLu().solve(Eigen::VectorXcd::Unit(signals_, input));
+}
+
+std::complex<double> BlockDiagram::characteristic(std::complex<double> s) const {
+    const Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(signals_, signals_) - connections(s);
+    std::complex<double> product = A.partialPivLu().determinant();
+    for (const Block& block : blocks_) product *= denominator(block.plant, s);
+    return product;
+}
+
+Expected<PidSignals> add_pid(BlockDiagram& diagram, const ParallelPid& pid, int y) {
+    const bool derivative = pid.Kd != 0;
+    if (derivative && pid.filter.type == FilterType::none)
+        return Error{ErrorKind::invalid_argument, "controller",
+                     "A derivative without a filter cannot be part of several loops; give Tf."};
+    const bool on_measurement = pid.filter.type == FilterType::measurement_first_order ||
+                                pid.filter.type == FilterType::measurement_second_order;
+    const auto filter = filter_denominator(pid.filter);
+    PidSignals signals{diagram.add_signal(), diagram.add_signal()};
+    if (on_measurement)
+        diagram.add(y, signals.error, transfer_function({-1}, filter));
+    else
+        diagram.add(y, signals.error, -1);
+    if (pid.Ki != 0)
+        diagram.add(signals.error, signals.output, transfer_function({pid.Kp, pid.Ki}, {1, 0}));
+    else
+        diagram.add(signals.error, signals.output, pid.Kp);
+    if (derivative) diagram.add(y, signals.output, transfer_function({-pid.Kd, 0}, filter));
+    return signals;
+}
+
+}  // namespace tunewright

@@ -11,6 +11,19 @@ namespace {
 
 constexpr double kQuickTolerance = 3e-5, kQuickSettled = 1e-4;
 
+std::vector<double> quick_IAEs_of(const BlockDiagram& diagram, int enters_at, const std::vector<int>& outputs,
+                                  double target) {
+    const auto response = DiagramResponse::of(diagram, {{enters_at, 1}},
+                                              {.tolerance = kQuickTolerance, .settled = kQuickSettled, .max_steps = 20000});
+    std::vector<double> out(outputs.size(), std::numeric_limits<double>::infinity());
+    if (!response || !response->settles()) return out;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const StepResponse nodes = response->pair(outputs[i], outputs[i], target);
+        out[i] = integral_of_absolute_error(nodes.nodes, target, nodes.error_integral_final);
+    }
+    return out;
+}
+
 }  // namespace
 
 Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target) {
@@ -29,11 +42,11 @@ Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, i
 }
 
 double quick_IAE(const BlockDiagram& diagram, int enters_at, int y, double target) {
-    const auto response = DiagramResponse::of(diagram, {{enters_at, 1}},
-                                              {.tolerance = kQuickTolerance, .settled = kQuickSettled, .max_steps = 20000});
-    if (!response || !response->settles()) return std::numeric_limits<double>::infinity();
-    const StepResponse nodes = response->pair(y, y, target);
-    return integral_of_absolute_error(nodes.nodes, target, nodes.error_integral_final);
+    return quick_IAEs_of(diagram, enters_at, {y}, target).front();
+}
+
+std::vector<double> quick_IAEs(const BlockDiagram& diagram, int enters_at, const std::vector<int>& outputs) {
+    return quick_IAEs_of(diagram, enters_at, outputs, 0);
 }
 
 }  // namespace tunewright::structure

@@ -1,6 +1,8 @@
 // The figures of one response of loops that are closed together.
 #pragma once
 
+#include <vector>
+
 #include "engine/blocks/diagram_response.h"
 #include "engine/expected.h"
 
@@ -20,5 +22,7 @@ Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, i
 
 /// The IAE alone, at a lower accuracy: 1e-4, for a search.
 double quick_IAE(const BlockDiagram& diagram, int enters_at, int y, double target);
+/// The same of several outputs that should become 0.
+std::vector<double> quick_IAEs(const BlockDiagram& diagram, int enters_at, const std::vector<int>& outputs);
 
 }  // namespace tunewright::structure

@@ -35,7 +35,7 @@ void BlockDiagram::add(int from, int to, double gain, double L) {
 
 int BlockDiagram::order() const {
     int sum = 0;
-    for (const Block& block : blocks_) sum += block.plant.order();
+    for (const Block& block : blocks_) sum += block.cancelled ? 0 : block.plant.order();
     return sum;
 }
 
@@ -65,7 +65,8 @@ Eigen::VectorXcd BlockDiagram::response(std::complex<double> s, int input) const
 std::complex<double> BlockDiagram::characteristic(std::complex<double> s) const {
     const Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(signals_, signals_) - connections(s);
     std::complex<double> product = A.partialPivLu().determinant();
-    for (const Block& block : blocks_) product *= denominator(block.plant, s);
+    for (const Block& block : blocks_)
+        if (!block.cancelled) product *= denominator(block.plant, s);
     return product;
 }
 

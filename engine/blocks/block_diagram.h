@@ -20,6 +20,9 @@ namespace tunewright {
 struct Block {
     int from = 0, to = 0;
     LinearPlant plant;
+    /// What reaches the block cancels its poles, as in a predictor's model of an integrator less its own past: they are
+    /// no poles of the loops.
+    bool cancelled = false;
 };
 
 class BlockDiagram {
@@ -27,13 +30,15 @@ public:
     /// A new signal's number, from 0.
     int add_signal() { return signals_++; }
 
-    void add(int from, int to, LinearPlant plant) { blocks_.push_back({from, to, std::move(plant)}); }
+    void add(int from, int to, LinearPlant plant, bool cancelled = false) {
+        blocks_.push_back({from, to, std::move(plant), cancelled});
+    }
     /// gain e^(-Ls); none for a gain of 0.
     void add(int from, int to, double gain, double L = 0);
 
     int signals() const { return signals_; }
     const std::vector<Block>& blocks() const { return blocks_; }
-    /// Poles of all blocks together.
+    /// Poles of all blocks together, without those that are cancelled.
     int order() const;
     /// Of all blocks.
     double total_dead_time() const;

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -25,6 +26,7 @@ constexpr double kBetweenLooks = 1.5;    // ratio of the frequencies at which th
 constexpr double kNeutral = 1;           // the same of the direct terms
 constexpr double kMostFrequency = 1e9;   // of the reference frequency
 constexpr int kMostNewton = 40;
+constexpr double kNearCancelled = 1e-4;  // of 1/time_scale
 
 double spectral_radius(const Eigen::MatrixXd& A) {
     const auto n = static_cast<int>(A.rows());
@@ -52,6 +54,7 @@ public:
         const auto n = diagram_.signals();
         double angle = std::arg((Eigen::MatrixXcd::Identity(n, n) - diagram_.connections(s)).determinant());
         for (const Block& block : diagram_.blocks()) {
+            if (block.cancelled) continue;
             for (int i = 0; i < block.plant.integrators(); ++i) angle += std::arg(s / to_a);
             for (const Complex pole : block.plant.poles()) angle += std::arg((s - pole) / to_a);
         }
@@ -141,6 +144,18 @@ Eigen::MatrixXd discretised(const DiagramSystem& system, int nodes) {
     return A;
 }
 
+/// True near a pole that is none of the loops.
+bool is_cancelled(const BlockDiagram& diagram, Complex pole) {
+    for (const Block& block : diagram.blocks()) {
+        if (!block.cancelled) continue;
+        const double near = kNearCancelled / diagram.time_scale();
+        if (block.plant.integrators() > 0 && std::abs(pole) < near) return true;
+        for (const Complex own : block.plant.poles())
+            if (std::abs(pole - own) < near) return true;
+    }
+    return false;
+}
+
 /// Newton's method on the characteristic function, with its slope from a difference; the start where it does not
 /// converge.
 Complex refined(const BlockDiagram& diagram, Complex start) {
@@ -167,7 +182,10 @@ Expected<Complex> rightmost_pole(const BlockDiagram& diagram, int nodes) {
     if (poles.empty())
         return Error{ErrorKind::numerical_failure, "",
                      "The poles of the loops cannot be computed: they have no states, or their numbers are out of range."};
-    return refined(diagram, *std::ranges::max_element(poles, {}, [](Complex pole) { return pole.real(); }));
+    Complex rightmost = -std::numeric_limits<double>::infinity();
+    for (const Complex pole : poles)
+        if (pole.real() > rightmost.real() && !is_cancelled(diagram, pole)) rightmost = pole;
+    return refined(diagram, rightmost);
 }
 
 }  // namespace tunewright

@@ -1,7 +1,9 @@
 #include "engine/blocks/block_diagram.h"
 
-#include <Eigen/LU>
+#include <cmath>
 #include <utility>
+
+#include "engine/numerics/fast_complex.h"
 
 namespace tunewright {
 namespace {
@@ -20,10 +22,37 @@ std::vector<double> filter_denominator(const Filter& filter) {
 }
 
 std::complex<double> denominator(const LinearPlant& plant, std::complex<double> s) {
-    std::complex<double> product = 1;
-    for (int i = 0; i < plant.integrators(); ++i) product *= s;
-    for (const auto pole : plant.poles()) product *= s - pole;
-    return product;
+    std::complex<double> value = 1;
+    for (int i = 0; i < plant.integrators(); ++i) value = product(value, s);
+    for (const auto pole : plant.poles()) value = product(value, s - pole);
+    return value;
+}
+
+double size(std::complex<double> z) { return std::abs(z.real()) + std::abs(z.imag()); }
+
+/// Gaussian elimination with pivots by column; `b` becomes what belongs to the triangle. Eigen's own takes twice as
+/// long on these small matrices: it computes a norm that nothing here needs. The determinant.
+std::complex<double> eliminate(Eigen::MatrixXcd& A, Eigen::VectorXcd* b) {
+    const Eigen::Index n = A.rows();
+    std::complex<double> determinant = 1;
+    for (Eigen::Index k = 0; k < n; ++k) {
+        Eigen::Index pivot = k;
+        for (Eigen::Index i = k + 1; i < n; ++i)
+            if (size(A(i, k)) > size(A(pivot, k))) pivot = i;
+        if (pivot != k) {
+            for (Eigen::Index j = k; j < n; ++j) std::swap(A(k, j), A(pivot, j));
+            if (b != nullptr) std::swap((*b)[k], (*b)[pivot]);
+            determinant = -determinant;
+        }
+        determinant = product(determinant, A(k, k));
+        for (Eigen::Index i = k + 1; i < n; ++i) {
+            if (size(A(i, k)) == 0) continue;
+            const std::complex<double> factor = quotient(A(i, k), A(k, k));
+            for (Eigen::Index j = k + 1; j < n; ++j) A(i, j) -= product(factor, A(k, j));
+            if (b != nullptr) (*b)[i] -= product(factor, (*b)[k]);
+        }
+    }
+    return determinant;
 }
 
 }  // namespace
@@ -58,16 +87,22 @@ Eigen::MatrixXcd BlockDiagram::connections(std::complex<double> s) const {
 }
 
 Eigen::VectorXcd BlockDiagram::response(std::complex<double> s, int input) const {
-    const Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(signals_, signals_) - connections(s);
-    return A.partialPivLu().solve(Eigen::VectorXcd::Unit(signals_, input));
+    Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(signals_, signals_) - connections(s);
+    Eigen::VectorXcd x = Eigen::VectorXcd::Unit(signals_, input);
+    eliminate(A, &x);
+    for (Eigen::Index k = signals_ - 1; k >= 0; --k) {
+        for (Eigen::Index j = k + 1; j < signals_; ++j) x[k] -= product(A(k, j), x[j]);
+        x[k] = quotient(x[k], A(k, k));
+    }
+    return x;
 }
 
 std::complex<double> BlockDiagram::characteristic(std::complex<double> s) const {
-    const Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(signals_, signals_) - connections(s);
-    std::complex<double> product = A.partialPivLu().determinant();
+    Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(signals_, signals_) - connections(s);
+    std::complex<double> value = eliminate(A, nullptr);
     for (const Block& block : blocks_)
-        if (!block.cancelled) product *= denominator(block.plant, s);
-    return product;
+        if (!block.cancelled) value = product(value, denominator(block.plant, s));
+    return value;
 }
 
 Expected<PidSignals> add_pid(BlockDiagram& diagram, const ParallelPid& pid, int y) {

@@ -16,15 +16,15 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kSameInstant = 1e-9;   // of the shortest step
-constexpr double kOfDeadTime = 0.25;    // first step over the shortest dead time
-constexpr double kOfRate = 0.1;         // first step times the fastest rate
-constexpr int kEchoes = 4;              // passages through dead times after which a jump no longer counts
-constexpr double kNearZero = 1e-5;      // frequency, of 1/time_scale, from which the values at 0 are extrapolated
-constexpr double kNoError = 1e-9;       // of the step: the error's final value
-constexpr int kIterations = 12;         // of a step that is longer than a dead time
-constexpr double kConverged = 1e-10;    // of the largest value
-constexpr double kOneLevel = 16;        // by which half the step lowers the error
+constexpr double kSameInstant = 1e-9;  // of the shortest step
+constexpr double kOfDeadTime = 0.25;   // first step over the shortest dead time
+constexpr double kOfRate = 0.1;        // first step times the fastest rate
+constexpr int kEchoes = 4;             // passages through dead times after which a jump no longer counts
+constexpr double kNearZero = 1e-5;     // frequency, of 1/time_scale, from which the values at 0 are extrapolated
+constexpr double kNoError = 1e-9;      // of the step: the error's final value
+constexpr int kIterations = 12;        // of a step that is longer than a dead time
+constexpr double kConverged = 1e-10;   // of the largest value
+constexpr double kOneLevel = 16;       // by which half the step lowers the error
 constexpr double kUnbounded = 1e6;
 
 /// The signal's value before t = 0 and after, on either side of a jump.
@@ -210,16 +210,18 @@ private:
             end[Index(k)] = sides.before.value;
             end_slope[Index(k)] = sides.before.slope;
         }
-        VectorXd last_value = Eigen::Map<const VectorXd>(&out_.values_[now * 2 * std::size_t(out_.signals_)], out_.signals_);
-        VectorXd last_slope = Eigen::Map<const VectorXd>(
-            &out_.values_[(now * 2 + 1) * std::size_t(out_.signals_)], out_.signals_);
+        VectorXd last_value =
+            Eigen::Map<const VectorXd>(&out_.values_[now * 2 * std::size_t(out_.signals_)], out_.signals_);
+        VectorXd last_slope =
+            Eigen::Map<const VectorXd>(&out_.values_[(now * 2 + 1) * std::size_t(out_.signals_)], out_.signals_);
         const VectorXd first_value = last_value, first_slope = last_slope;
         last_value += h * first_slope;
         VectorXd z;
         for (int i = 0; i < kIterations; ++i) {
             for (const std::size_t k : unknown) {
                 const auto& [from, L] = system_.delayed[k];
-                const Cubic c = hermite_taylor(h, {first_value[from], first_slope[from]}, {last_value[from], last_slope[from]});
+                const Cubic c =
+                    hermite_taylor(h, {first_value[from], first_slope[from]}, {last_value[from], last_slope[from]});
                 end[Index(k)] = value_at(c, h - L);
                 end_slope[Index(k)] = slope_at(c, h - L);
             }
@@ -287,7 +289,8 @@ StepResponse DiagramResponse::pair(int y, int u, double r) const {
             const double h = t_[i] - t_[i - 1];
             integral += h * r - hermite_integral(h, at(i - 1, y), own);
         }
-        out.nodes.push_back({t_[i], own.value, own.slope, output.value - inputs_[std::size_t(u)], output.slope, integral});
+        out.nodes.push_back(
+            {t_[i], own.value, own.slope, output.value - inputs_[std::size_t(u)], output.slope, integral});
     }
     return out;
 }

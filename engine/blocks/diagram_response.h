@@ -21,8 +21,8 @@ struct DiagramStep {
 };
 
 struct DiagramResponseOptions {
-    double tolerance = 1e-6;        ///< of the interpolation, relative to each signal's largest value
-    double settled = 1e-6;          ///< ends when every signal stays within this fraction of its largest value
+    double tolerance = 1e-6;             ///< of the interpolation, relative to each signal's largest value
+    double settled = 1e-6;               ///< ends when every signal stays within this fraction of its largest value
     std::optional<double> horizon = {};  ///< ends here instead
     int max_steps = 60000;
 };
@@ -50,7 +50,7 @@ private:
     std::vector<double> values_;  ///< of each node the values of all signals, then their slopes
     std::vector<double> inputs_;  ///< what enters at each signal
     std::vector<double> final_;   ///< where each signal comes to rest; empty: with a horizon
-    std::vector<double> slope_;   ///< of each signal's transform times s, at s = 0: less the integral of its way to rest
+    std::vector<double> slope_;  ///< of each signal's transform times s, at s = 0: less the integral of its way to rest
     bool settles_ = true;
 };
 

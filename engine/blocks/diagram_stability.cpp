@@ -9,7 +9,7 @@
 
 #include "engine/blocks/diagram_system.h"
 #include "engine/loop/winding.h"
-#include "engine/numerics/chebyshev.h"
+#include "engine/numerics/matrix/dense.h"
 #include "engine/numerics/matrix/eigenvalues.h"
 
 namespace tunewright {
@@ -39,18 +39,19 @@ double spectral_radius(const Eigen::MatrixXd& A) {
 /// g(jw) = det(I - M) prod den/(jw + a)^n: bounded, and it tends to det(I - M(infinity)).
 class Curve {
 public:
-    explicit Curve(const BlockDiagram& diagram)
-        : diagram_(diagram), a_(1 / diagram.time_scale()), order_(diagram.order()) {}
+    Curve(const BlockDiagram& diagram, double right_of)
+        : diagram_(diagram), a_(1 / diagram.time_scale()), right_of_(right_of * a_), order_(diagram.order()) {}
 
     double reference() const { return a_; }
     Complex at(Complex s) const { return diagram_.characteristic(s) / std::pow(s + a_, order_); }
-    Complex at(double omega) const { return at(Complex(0, omega)); }
+    Complex at(double omega) const { return at(Complex(right_of_, omega)); }
+    Complex start(double omega) const { return at(Complex(right_of_ + omega)); }
     bool gain_is_small(double omega) const {
-        return spectral_radius(diagram_.connections({0, omega}).cwiseAbs()) < kSmallGain;
+        return spectral_radius(diagram_.connections({right_of_, omega}).cwiseAbs()) < kSmallGain;
     }
     /// From a frequency with a small gain to infinity: no factor turns by more than half a turn there.
     double rest_of_turn(double omega) const {
-        const Complex s(0, omega), to_a = s + a_;
+        const Complex s(right_of_, omega), to_a = s + a_;
         const auto n = diagram_.signals();
         double angle = std::arg((Eigen::MatrixXcd::Identity(n, n) - diagram_.connections(s)).determinant());
         for (const Block& block : diagram_.blocks()) {
@@ -63,7 +64,7 @@ public:
 
 private:
     const BlockDiagram& diagram_;
-    double a_;
+    double a_, right_of_;
     int order_;
 };
 
@@ -91,15 +92,15 @@ bool is_neutral_and_unstable(const DiagramSystem& system) {
 
 }  // namespace
 
-StabilityCount count_unstable_poles(const BlockDiagram& diagram) {
+StabilityCount count_unstable_poles(const BlockDiagram& diagram, double right_of) {
     const auto system = make_system(diagram);
     if (!system || is_neutral_and_unstable(*system)) return {.unstable_poles = -1};
-    const Curve g(diagram);
+    const Curve g(diagram, right_of);
     const double reference = g.reference(), dead_time = diagram.total_dead_time();
     if (!std::isfinite(reference)) return {};
     // At 0 itself integrators are infinite; the curve begins there on the real axis.
     double omega = kLowest * reference, next = kFirstStep * omega, ratio = kFirstStep;
-    const Complex start = g.at(Complex(omega));
+    const Complex start = g.start(omega);
     Complex here = g.at(omega);
     if (!Winding::is_short(start, here)) return {.on_the_boundary = true};
     Winding winding(start);
@@ -180,8 +181,9 @@ Expected<Complex> rightmost_pole(const BlockDiagram& diagram, int nodes) {
     const Eigen::MatrixXd A = discretised(*system, nodes);
     const auto poles = eigenvalues({A.data(), static_cast<std::size_t>(A.size())}, static_cast<int>(A.rows()));
     if (poles.empty())
-        return Error{ErrorKind::numerical_failure, "",
-                     "The poles of the loops cannot be computed: they have no states, or their numbers are out of range."};
+        return Error{
+            ErrorKind::numerical_failure, "",
+            "The poles of the loops cannot be computed: they have no states, or their numbers are out of range."};
     Complex rightmost = -std::numeric_limits<double>::infinity();
     for (const Complex pole : poles)
         if (pole.real() > rightmost.real() && !is_cancelled(diagram, pole)) rightmost = pole;

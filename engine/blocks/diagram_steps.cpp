@@ -1,5 +1,6 @@
 #include "engine/blocks/diagram_steps.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/numerics/matrix/eigenvalues.h"
@@ -7,8 +8,8 @@
 namespace tunewright {
 namespace {
 
-constexpr int kTerms = 14;             // of Taylor's series: 0.5^14/14! is below rounding
-constexpr double kLargestTerm = 0.5;   // rate times step
+constexpr int kTerms = 14;            // of Taylor's series: 0.5^14/14! is below rounding
+constexpr double kLargestTerm = 0.5;  // rate times step
 
 }  // namespace
 
@@ -36,7 +37,8 @@ ManyInputsPropagator::ManyInputsPropagator(const Eigen::MatrixXd& F, const Eigen
 }
 
 ManyInputsStep ManyInputsPropagator::step(double h) const {
-    const int doublings = std::max(0, static_cast<int>(std::ceil(std::log2(std::max(h * rate_ / kLargestTerm, 1e-300)))));
+    const int doublings =
+        std::max(0, static_cast<int>(std::ceil(std::log2(std::max(h * rate_ / kLargestTerm, 1e-300)))));
     ManyInputsStep out;
     out.h = std::ldexp(h, -doublings);
     const Eigen::Index n = F_.rows();

@@ -9,8 +9,8 @@
 #include "engine/loop/delay_system.h"
 #include "engine/loop/frequency_grid.h"
 #include "engine/loop/winding.h"
-#include "engine/numerics/chebyshev.h"
 #include "engine/numerics/fast_complex.h"
+#include "engine/numerics/matrix/dense.h"
 #include "engine/numerics/matrix/eigenvalues.h"
 
 namespace tunewright {

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 #include <utility>
 
 #include "engine/blocks/diagram_loop.h"
 #include "engine/loop/peaks.h"
+#include "engine/structure/cascade_diagram.h"
 #include "engine/structure/limited_search.h"
 #include "engine/structure/local_peaks.h"
 #include "engine/structure/step_figures.h"
-#include "engine/tuning/robust/robust.h"
 
 namespace tunewright::structure {
 namespace {
@@ -18,15 +20,11 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kValveOverLoops = 1.15;  // the default limit on Ms_valve
-constexpr int kPerDecade = 40;            // frequencies of a search
-constexpr double kLeastPeak = -0.3;       // ln below a limit: peaks that a step may reach
-constexpr double kMostMove = 4;           // ln of a setting from its start
+constexpr double kValveOverLoops = 1.15;                       // the default limit on Ms_valve
+constexpr int kPerDecade = 40;                                 // frequencies of a search
+constexpr double kLeastPeak = -0.3;                            // ln below a limit: peaks that a step may reach
+constexpr double kMostMove = 4;                                // ln of a setting from its start
 constexpr double kWeaker[] = {1, 0.7, 0.45, 0.25, 0.1, 0.03};  // factors of the outer gain until the limits hold
-
-double valve_limit(const CascadeLimits& limits) {
-    return limits.Ms_valve.value_or(kValveOverLoops * std::max(limits.Ms_inner, limits.Ms_outer));
-}
 
 Peaks peaks_at(const BlockDiagram& diagram, int signal) {
     const DiagramLoop loop(diagram, signal);
@@ -46,6 +44,7 @@ public:
         if (count() > 2) x[2] = std::log(start_.Td);
         return x;
     }
+    const IdealPid& start() const { return start_; }
     IdealPid at(const Eigen::Ref<const VectorXd>& x) const {
         IdealPid pid = start_;
         pid.Kp = std::copysign(std::exp(x[0]), start_.Kp);
@@ -79,15 +78,15 @@ std::vector<double> search_grid(const CascadePlants& plants) {
 }
 
 /// ln of the functions over their limits: S and T of the outer loop, S at the valve, S of the inner loop.
-void excess_of(const CascadeDiagram& all, const CascadeDiagram& inner, const CascadeLimits& limits, bool sequential,
+void excess_of(const CascadeDiagram& all, const CascadeDiagram& inner, const CascadeDesign& limits, bool sequential,
                double omega, std::vector<double>& excess) {
     const std::complex<double> s(0, omega);
     const auto outer = all.diagram.response(s, all.r2)[all.r2], valve = all.diagram.response(s, all.valve)[all.valve];
-    excess = {std::log(std::abs(outer) / limits.Ms_outer), std::log(std::abs(valve) / valve_limit(limits))};
+    excess = {std::log(std::abs(outer) / limits.outer.Ms), std::log(std::abs(valve) / limits.valve_limit())};
     if (sequential)
-        excess.push_back(std::log(std::abs(1.0 - outer) / limits.Mt_outer));
+        excess.push_back(std::log(std::abs(1.0 - outer) / limits.outer.Mt));
     else
-        excess.push_back(std::log(std::abs(inner.diagram.response(s, inner.valve)[inner.valve]) / limits.Ms_inner));
+        excess.push_back(std::log(std::abs(inner.diagram.response(s, inner.valve)[inner.valve]) / limits.inner.Ms));
 }
 
 /// One search over the settings of the outer, or of both controllers.
@@ -95,7 +94,11 @@ class CascadeSearch {
 public:
     CascadeSearch(const CascadePlants& plants, const CascadeDesign& design, const CascadeControllers& start,
                   const RunControl& control)
-        : plants_(plants), design_(design), inner_(start.inner), outer_(start.outer), grid_(search_grid(plants)),
+        : plants_(plants),
+          design_(design),
+          inner_(start.inner),
+          outer_(start.outer),
+          grid_(search_grid(plants)),
           control_(control) {}
 
     LimitedResult outer_only(const VectorXd& start) const { return run(start, false); }
@@ -110,7 +113,7 @@ public:
 
     CascadeControllers controllers(const VectorXd& x) const {
         const Index n = outer_.count();
-        return {x.size() > n ? inner_.at(x.tail(x.size() - n)) : inner_.at(inner_.of_start()), outer_.at(x.head(n))};
+        return {x.size() > n ? inner_.at(x.tail(x.size() - n)) : inner_.start(), outer_.at(x.head(n))};
     }
 
     /// ln of the largest excess, infinite if the loops are not stable.
@@ -145,7 +148,7 @@ private:
         return local_peaks(
             grid_,
             [&](double omega, std::vector<double>& excess) {
-                excess_of(both.all, both.inner, design_.limits, !joint, omega, excess);
+                excess_of(both.all, both.inner, design_, !joint, omega, excess);
             },
             kLeastPeak);
     }
@@ -157,7 +160,7 @@ private:
         problem.excess_at = [&](const VectorXd& x, int function, double omega) {
             const Diagrams both = diagrams(x);
             std::vector<double> excess;
-            excess_of(both.all, both.inner, design_.limits, !joint, omega, excess);
+            excess_of(both.all, both.inner, design_, !joint, omega, excess);
             return excess[std::size_t(function)];
         };
         problem.low = start.array() - kMostMove;
@@ -178,29 +181,13 @@ Expected<LinearPlant> rough_outer_plant(const CascadePlants& plants, const Ideal
     if (!closed) return closed.error();
     const double h = 1e-4 / closed->diagram.time_scale();
     const auto to_y1 = [&](double s) { return closed->diagram.response(s, closed->r2)[closed->y1].real(); };
-    Zpk plant{.K = plants.outer.gain(),
-              .zeros = {plants.outer.zeros().begin(), plants.outer.zeros().end()},
-              .poles = {plants.outer.poles().begin(), plants.outer.poles().end()},
-              .L = plants.outer.dead_time()};
-    for (int i = 0; i < plants.outer.integrators(); ++i) plant.poles.emplace_back(0);
+    Zpk plant = factors_of(plants.outer);
     const double ratio = to_y1(h) / plants.outer.at(h).real();
     plant.K *= ratio;
     // -d ln(to_y1/P1)/ds at 0: the delay that the inner loop adds.
     const double delay = -std::log(to_y1(2 * h) / plants.outer.at(2 * h).real() / ratio) / h;
     plant.L += std::max(0.0, delay);
     return LinearPlant::make(Plant(plant));
-}
-
-Expected<IdealPid> robust_settings(const LinearPlant& plant, ControllerKind kind, double Ms, double Mt,
-                                   const RunControl& control) {
-    const Zpk as_given{.K = plant.gain(),
-                       .zeros = {plant.zeros().begin(), plant.zeros().end()},
-                       .poles = {plant.poles().begin(), plant.poles().end()},
-                       .L = plant.dead_time()};
-    TuningProblem problem{.plant = Plant(as_given), .linear = plant, .dead_time_std = {}};
-    auto tuned = tune_robust(problem, {.controller = kind, .Ms = Ms, .Mt = Mt}, {control.stop, nullptr, control.now_ms});
-    if (!tuned) return tuned.error();
-    return tuned->controller;
 }
 
 CascadeControllers sequential(const CascadePlants& plants, const CascadeDesign& design, CascadeControllers start,
@@ -216,29 +203,38 @@ CascadeControllers sequential(const CascadePlants& plants, const CascadeDesign& 
     return start;
 }
 
+/// The place of a loop's error in the request.
+Error below(const char* loop, Error error) {
+    error.where = loop + (error.where.empty() ? std::string() : "/" + error.where);
+    return error;
+}
+
+Error unstable_inner() {
+    return {
+        ErrorKind::invalid_argument, "inner/controller",
+        "The inner loop is not stable with this controller, so no outer controller can be designed. Lower its gain, "
+        "or leave it out: it is then designed too."};
+}
+
+/// Figures of y1 after unit steps of both loads and the set point.
+std::optional<Error> add_responses(const CascadeDiagram& all, LoadFigures& inner_load, LoadFigures& outer_load,
+                                   LoadFigures& setpoint) {
+    const auto add = [&](int signal, double target, LoadFigures& to) -> std::optional<Error> {
+        const auto figures = step_figures(all.diagram, signal, all.y1, all.valve, target);
+        if (!figures) return figures.error();
+        to = {figures->IAE, figures->IE, target == 0 ? figures->peak : figures->overshoot, figures->TV};
+        return std::nullopt;
+    };
+    if (auto error = add(all.valve, 0, inner_load)) return error;
+    if (auto error = add(all.outer_input, 0, outer_load)) return error;
+    return add(all.r1, 1, setpoint);
+}
+
 }  // namespace
 
-Expected<CascadeDiagram> cascade_diagram(const CascadePlants& plants, const IdealPid& inner, const IdealPid* outer) {
-    CascadeDiagram out;
-    BlockDiagram& diagram = out.diagram;
-    out.y1 = diagram.add_signal();
-    out.y2 = diagram.add_signal();
-    out.outer_input = diagram.add_signal();
-    const auto second = add_pid(diagram, to_parallel(inner), out.y2);
-    if (!second) return second.error();
-    out.valve = second->output;
-    out.r2 = second->error;
-    diagram.add(out.valve, out.y2, plants.inner);
-    diagram.add(plants.arrangement == Arrangement::series ? out.y2 : out.valve, out.outer_input, 1);
-    diagram.add(out.outer_input, out.y1, plants.outer);
-    if (outer == nullptr) return out;
-    const auto first = add_pid(diagram, to_parallel(*outer), out.y1);
-    if (!first) return first.error();
-    out.r1 = first->error;
-    out.r2 = first->output;
-    diagram.add(first->output, second->error, 1);
-    return out;
-}
+double default_valve_limit(double Ms_inner, double Ms_outer) { return kValveOverLoops * std::max(Ms_inner, Ms_outer); }
+
+double CascadeDesign::valve_limit() const { return Ms_valve.value_or(default_valve_limit(inner.Ms, outer.Ms)); }
 
 Expected<CascadeFigures> judge_cascade(const CascadePlants& plants, const CascadeControllers& controllers) {
     const auto all = cascade_diagram(plants, controllers.inner, &controllers.outer);
@@ -247,44 +243,43 @@ Expected<CascadeFigures> judge_cascade(const CascadePlants& plants, const Cascad
     CascadeFigures out;
     out.stable = count_unstable_poles(all->diagram).stable() && count_unstable_poles(inner->diagram).stable();
     if (!out.stable) return out;
-    const Peaks of_inner = peaks_at(inner->diagram, inner->valve), of_valve = peaks_at(all->diagram, all->valve);
-    const DiagramLoop outer(all->diagram, all->r2);
-    const LoopGrid grid = make_peak_grid(outer);
-    const Peaks of_outer = find_peaks(outer, grid);
+    const DiagramLoop own(inner->diagram, inner->valve), outer(all->diagram, all->r2);
+    const LoopGrid own_grid = make_peak_grid(own), grid = make_peak_grid(outer);
+    const Peaks of_inner = find_peaks(own, own_grid), of_outer = find_peaks(outer, grid),
+                of_valve = peaks_at(all->diagram, all->valve);
     out.Ms_inner = of_inner.S.value;
     out.Mt_inner = of_inner.T.value;
     out.Ms_outer = of_outer.S.value;
     out.Mt_outer = of_outer.T.value;
     out.Ms_valve = of_valve.S.value;
     out.outer_margins = find_margins(outer, grid);
-    const auto add = [&](int signal, double target, LoadFigures& to) -> std::optional<Error> {
-        const auto figures = step_figures(all->diagram, signal, all->y1, all->valve, target);
-        if (!figures) return figures.error();
-        to = {figures->IAE, figures->IE, figures->peak, figures->TV};
-        if (target != 0) out.overshoot_percent = 100 * figures->overshoot;
-        return std::nullopt;
-    };
-    if (auto error = add(all->valve, 0, out.inner_load)) return *error;
-    if (auto error = add(all->outer_input, 0, out.outer_load)) return *error;
-    if (auto error = add(all->r1, 1, out.setpoint)) return *error;
+    const double fast = find_margins(own, own_grid).gain_crossover, slow = out.outer_margins.gain_crossover;
+    out.speed_ratio = fast > 0 && slow > 0 ? Figure(fast / slow) : no_figure("A loop has no gain crossover.");
+    if (auto error = add_responses(*all, out.inner_load, out.outer_load, out.setpoint)) return *error;
     return out;
 }
 
 Expected<CascadeResult> design_cascade(const CascadePlants& plants, const CascadeDesign& design,
                                        const RunControl& control) {
-    const CascadeLimits& limits = design.limits;
-    auto inner = robust_settings(plants.inner, design.inner, limits.Ms_inner, limits.Mt_inner, control);
-    if (!inner) return inner.error();
+    auto inner = design.given_inner ? Expected<IdealPid>(*design.given_inner)
+                                    : robust_settings(plants.inner, design.inner, control);
+    if (!inner) return below("inner", inner.error());
+    const auto closed = cascade_diagram(plants, *inner, nullptr);
+    if (!closed) return closed.error();
+    if (!count_unstable_poles(closed->diagram).stable()) return unstable_inner();
     const auto rough = rough_outer_plant(plants, *inner);
-    if (!rough) return rough.error();
-    auto outer = robust_settings(*rough, design.outer, limits.Ms_outer, limits.Mt_outer, control);
-    if (!outer) return outer.error();
+    if (!rough) return below("outer", rough.error());
+    auto outer = robust_settings(*rough, design.outer, control);
+    if (!outer) return below("outer", outer.error());
     CascadeResult result;
     LimitedResult found;
     result.controllers = sequential(plants, design, {*inner, *outer}, control, found);
+    if (!std::isfinite(found.log_cost) && control.stop.stop_requested())
+        return Error{ErrorKind::cancelled, "", "The search was stopped before it found settings."};
     if (!std::isfinite(found.log_cost))
-        return Error{ErrorKind::no_feasible_controller, "limits",
-                     "No outer controller keeps the limits with this inner one; allow a larger Ms, or a slower inner loop."};
+        return Error{
+            ErrorKind::no_feasible_controller, "limits",
+            "No outer controller keeps the limits with this inner one; allow a larger Ms, or a slower inner loop."};
     if (design.joint && !found.stopped) {
         const CascadeSearch search(plants, design, result.controllers, control);
         const LimitedResult both = search.joint(search.start(true));
@@ -298,6 +293,26 @@ Expected<CascadeResult> design_cascade(const CascadePlants& plants, const Cascad
     if (!figures) return figures.error();
     result.figures = *figures;
     return result;
+}
+
+Expected<SingleLoop> design_single_loop(const CascadePlants& plants, const LoopDesign& design,
+                                        const RunControl& control) {
+    const auto whole = plants.arrangement == Arrangement::series
+                           ? LinearPlant::make(Plant(factors_of(plants.inner, plants.outer)))
+                           : Expected<LinearPlant>(plants.outer);
+    if (!whole) return whole.error();
+    auto controller = robust_settings(*whole, design, control);
+    if (!controller) return controller.error();
+    SingleLoop out{.controller = *controller, .inner_load = {}, .outer_load = {}, .setpoint = {}};
+    const auto all = single_diagram(plants, out.controller);
+    if (!all) return all.error();
+    out.stable = count_unstable_poles(all->diagram).stable();
+    if (!out.stable) return out;
+    const Peaks peaks = peaks_at(all->diagram, all->valve);
+    out.Ms = peaks.S.value;
+    out.Mt = peaks.T.value;
+    if (auto error = add_responses(*all, out.inner_load, out.outer_load, out.setpoint)) return *error;
+    return out;
 }
 
 }  // namespace tunewright::structure

@@ -5,18 +5,20 @@
 #include <limits>
 #include <utility>
 
+#include "engine/blocks/diagram_response.h"
 #include "engine/blocks/diagram_stability.h"
 #include "engine/numerics/optimise/direct_search.h"
+#include "engine/structure/loop_design.h"
 
 namespace tunewright::structure {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSlopeOfRule = 1.7;        // Guzman and Hagglund: a over the change of Tp
+constexpr double kSlopeOfRule = 1.7;               // Guzman and Hagglund: a over the change of Tp
 constexpr double kFirstSteps[] = {0.1, 0.3, 0.5};  // of ln(Kf), ln(Tz), ln(Tp)
-constexpr int kMostEvaluations = 160;       // of each of the searches
-constexpr double kShortLag = 0.05;          // of the lead: a start whose first move is large
-constexpr double kNearZero = 1e-5;          // of 1/time: where transforms are taken for 0
+constexpr int kMostEvaluations = 160;              // of each of the searches
+constexpr double kShortLag = 0.05;                 // of the lead: a start whose first move is large
+constexpr double kNearZero = 1e-5;                 // of 1/time: where transforms are taken for 0
 
 struct Diagram {
     BlockDiagram blocks;
@@ -36,20 +38,17 @@ Expected<Diagram> diagram_of(const LinearPlant& plant, const LinearPlant& distur
     if (!f || f->Kf == 0) return out;
     if (f->Tp > 0)
         out.blocks.add(out.d, out.u,
-                       std::move(*LinearPlant::make(Plant(TransferFunction{
-                           .num = {-f->Kf * f->Tz, -f->Kf}, .den = {f->Tp, 1}, .L = f->Lf}))));
+                       std::move(*LinearPlant::make(
+                           Plant(TransferFunction{.num = {-f->Kf * f->Tz, -f->Kf}, .den = {f->Tp, 1}, .L = f->Lf}))));
     else
         out.blocks.add(out.d, out.u, -f->Kf, f->Lf);
     return out;
 }
 
 LinearPlant changed(const LinearPlant& plant, double gain, double dead_time) {
-    Zpk out{.K = gain * plant.gain(),
-            .zeros = {plant.zeros().begin(), plant.zeros().end()},
-            .poles = {plant.poles().begin(), plant.poles().end()},
-            .L = dead_time * plant.dead_time()};
-    for (int i = 0; i < plant.integrators(); ++i) out.poles.emplace_back(0);
-    for (int i = 0; i > plant.integrators(); --i) out.zeros.emplace_back(0);
+    Zpk out = factors_of(plant);
+    out.K *= gain;
+    out.L *= dead_time;
     return std::move(*LinearPlant::make(Plant(out)));
 }
 
@@ -112,8 +111,7 @@ Feedforward rule_of(const FeedforwardProblem& problem, double late) {
     const double Td = f.Tp;
     if (late > 0) f.Tp = late < kSlopeOfRule * Td ? Td - late / kSlopeOfRule : 0;
     if (f.Tp <= std::abs(f.Kf) * f.Tz / problem.jump) f.Tp = std::abs(f.Kf) * f.Tz / problem.jump;
-    if (problem.feedback.has_integral())
-        f.Kf -= problem.feedback.Kp / problem.feedback.Ti * open_integral(problem, f);
+    if (problem.feedback.has_integral()) f.Kf -= problem.feedback.Kp / problem.feedback.Ti * open_integral(problem, f);
     return f;
 }
 
@@ -122,7 +120,9 @@ Feedforward optimum_of(const FeedforwardProblem& problem, const Feedforward& rul
                        bool& stopped) {
     const Feedforward inverse = inverse_of(problem);
     const auto at = [&](const std::vector<double>& x) {
-        Feedforward f{.Kf = std::copysign(std::exp(x[0]), inverse.Kf), .Tz = std::exp(x[1]), .Tp = std::exp(x[2]),
+        Feedforward f{.Kf = std::copysign(std::exp(x[0]), inverse.Kf),
+                      .Tz = std::exp(x[1]),
+                      .Tp = std::exp(x[2]),
                       .Lf = inverse.Lf};
         f.Tp = std::max(f.Tp, std::abs(f.Kf) * f.Tz / problem.jump);
         return f;
@@ -138,16 +138,16 @@ Feedforward optimum_of(const FeedforwardProblem& problem, const Feedforward& rul
     double least = kInfinity;
     const double none = IAE_of(problem, {});
     for (const Feedforward& start : {rule, inverse, quick}) {
-        const auto found = find_local_minimum(
-            LocalSearch::nelder_mead,
-            [&](const std::vector<double>& x, bool& stop) {
-                stop = stopped = control.stop.stop_requested();
-                const double IAE = IAE_of(problem, at(x));
-                return std::isfinite(IAE) ? std::log(IAE + 1e-12 * none) : 100.0;
-            },
-            start_of(start),
-            {.step = {kFirstSteps[0], kFirstSteps[1], kFirstSteps[2]}, .tolerance = 1e-5,
-             .max_evaluations = kMostEvaluations});
+        const auto found = find_local_minimum(LocalSearch::nelder_mead,
+                                              [&](const std::vector<double>& x, bool& stop) {
+                                                  stop = stopped = control.stop.stop_requested();
+                                                  const double IAE = IAE_of(problem, at(x));
+                                                  return std::isfinite(IAE) ? std::log(IAE + 1e-12 * none) : 100.0;
+                                              },
+                                              start_of(start),
+                                              {.step = {kFirstSteps[0], kFirstSteps[1], kFirstSteps[2]},
+                                               .tolerance = 1e-5,
+                                               .max_evaluations = kMostEvaluations});
         if (found.value < least) {
             least = found.value;
             best = at(found.x);
@@ -201,7 +201,6 @@ Expected<FeedforwardResult> design_feedforward(const FeedforwardProblem& problem
     FeedforwardResult out;
     out.late = problem.plant.dead_time() - problem.disturbance.dead_time();
     out.peak_bound = unavoidable_peak(problem, out.late);
-    const Feedforward inverse = inverse_of(problem), rule = rule_of(problem, out.late);
     const auto add = [&](FeedforwardKind kind, const std::optional<Feedforward>& f) -> std::optional<Error> {
         auto variant = judge_feedforward(problem, f);
         if (!variant) return variant.error();
@@ -210,18 +209,24 @@ Expected<FeedforwardResult> design_feedforward(const FeedforwardProblem& problem
         return std::nullopt;
     };
     if (auto error = add(FeedforwardKind::none, {})) return *error;
+    if (problem.given) {
+        if (auto error = add(FeedforwardKind::given, *problem.given)) return *error;
+        return out;
+    }
+    const Feedforward inverse = inverse_of(problem), rule = rule_of(problem, out.late);
     if (auto error = add(FeedforwardKind::gain, Feedforward{.Kf = inverse.Kf})) return *error;
     const bool proper = inverse.Tp > 0 || !(inverse.Tz > 0);
     if (!proper || std::abs(inverse.jump()) > problem.jump) {
-        out.variants.push_back(unbuilt(FeedforwardKind::inverse,
-                                       "The inverse would move u by more than the allowed first move after a unit step."));
+        out.variants.push_back(
+            unbuilt(FeedforwardKind::inverse,
+                    "The inverse would move u by more than the allowed first move after a unit step."));
     } else if (auto error = add(FeedforwardKind::inverse, inverse)) {
         return *error;
     }
     if (auto error = add(FeedforwardKind::rule, rule)) return *error;
-    const bool exact = out.late <= 0 && proper && std::abs(inverse.jump()) <= problem.jump &&
-                       out.variants[std::size_t(FeedforwardKind::inverse)].figures.IAE <
-                           1e-6 * out.variants.front().figures.IAE;
+    const bool exact =
+        out.late <= 0 && proper && std::abs(inverse.jump()) <= problem.jump &&
+        out.variants[std::size_t(FeedforwardKind::inverse)].figures.IAE < 1e-6 * out.variants.front().figures.IAE;
     if (auto error = add(FeedforwardKind::optimum, exact ? inverse : optimum_of(problem, rule, control, out.partial)))
         return *error;
     return out;

@@ -33,8 +33,9 @@ struct Feedforward {
 struct FeedforwardProblem {
     LinearPlant plant, disturbance;
     IdealPid feedback;
-    double jump = 10;       ///< largest |first move of u| after a unit step of d; > 0
-    double wrong = 0.2;     ///< share by which gains and dead times are taken to be wrong
+    double jump = 10;                       ///< largest |first move of u| after a unit step of d; > 0
+    std::optional<Feedforward> given = {};  ///< judged, in place of the designs
+    double wrong = 0.2;                     ///< share by which gains and dead times are taken to be wrong
 };
 
 enum class FeedforwardKind {
@@ -43,6 +44,7 @@ enum class FeedforwardKind {
     inverse,  ///< lead, lag and delay of the two plants, without the advance that cannot be built
     rule,     ///< Guzman and Hagglund 2011, Journal of Process Control 21, 92-102
     optimum,  ///< the least IAE with this feedback and a bounded first move
+    given,    ///< the user's
 };
 
 struct FeedforwardVariant {
@@ -56,7 +58,7 @@ struct FeedforwardVariant {
 };
 
 struct FeedforwardResult {
-    std::vector<FeedforwardVariant> variants;  ///< in the order of FeedforwardKind
+    std::vector<FeedforwardVariant> variants;  ///< in the order of FeedforwardKind; with a given one that and none
     double late = 0;                           ///< a = L - Ld
     double peak_bound = 0;                     ///< |error| that no feedforward avoids
     bool partial = false;

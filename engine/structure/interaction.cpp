@@ -3,15 +3,20 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "engine/blocks/diagram_loop.h"
 #include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
+#include "engine/structure/interaction_gains.h"
 #include "engine/structure/limited_search.h"
 #include "engine/structure/local_peaks.h"
+#include "engine/structure/loop_design.h"
 #include "engine/structure/step_figures.h"
 #include "engine/structure/structured_peak.h"
 #include "engine/tuning/limits.h"
@@ -21,20 +26,21 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
-using Eigen::MatrixXcd;
-using Eigen::MatrixXd;
+/// On the stack: two or three rows.
+using Response = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
 using Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kPerDecade = 30, kPerDecadeJudged = 200;  // frequencies of a search, of the answer
-constexpr double kBelow = 1e-3, kAbove = 1e2;           // of the corners
-constexpr double kLeastPeak = -0.3;                     // ln below a limit
-constexpr double kMostMove = 5;                         // ln of a setting from its start
+constexpr int kPerDecade = 30, kPerDecadeJudged = 200;        // frequencies of a search, of the answer
+constexpr double kBelow = 1e-3, kAbove = 1e2;                 // of the corners
+constexpr double kLeastPeak = -0.3;                           // ln below a limit
+constexpr double kMostMove = 5;                               // ln of a setting from its start
 constexpr double kUltimateOverKp = 2.2, kPeriodOverTi = 1.2;  // Luyben 1986
-constexpr double kDecibels = 2;                         // of the log modulus, for each loop
+constexpr double kDecibels = 2;                               // of the log modulus, for each loop
 constexpr double kLeastF = 0.3, kMostF = 1000;
 constexpr double kWeaker[] = {1, 0.7, 0.5, 0.35, 0.25, 0.15, 0.08};
-constexpr double kFaster = 3;                           // factor of a start with one loop quick and the other slow
+constexpr double kStartAbove = 1.2;  // mu of a start over its limit
+constexpr double kFaster = 3;        // factor of a start with one loop quick and the other slow
 constexpr double kTf_over_Td = 0.1;
 
 /// The loops of `closed`, of those there are.
@@ -43,7 +49,8 @@ struct LoopsDiagram {
     std::vector<int> y, u, r;  ///< r: the controller's error; -1 for a loop in manual
 };
 
-Expected<LoopsDiagram> diagram_of(const PlantMatrix& plants, const std::vector<IdealPid>& controllers, unsigned closed) {
+Expected<LoopsDiagram> diagram_of(const PlantMatrix& plants, const std::vector<IdealPid>& controllers,
+                                  unsigned closed) {
     LoopsDiagram out;
     const std::size_t n = plants.size();
     for (std::size_t i = 0; i < n; ++i) out.y.push_back(out.blocks.add_signal());
@@ -54,7 +61,7 @@ Expected<LoopsDiagram> diagram_of(const PlantMatrix& plants, const std::vector<I
             continue;
         }
         const auto pid = add_pid(out.blocks, to_parallel(controllers[i]), out.y[i]);
-        if (!pid) return pid.error();
+        if (!pid) return Error{pid.error().kind, "controllers/" + std::to_string(i), pid.error().message};
         out.u.push_back(pid->output);
         out.r.push_back(pid->error);
     }
@@ -64,16 +71,43 @@ Expected<LoopsDiagram> diagram_of(const PlantMatrix& plants, const std::vector<I
     return out;
 }
 
-/// The sensitivity at the outputs: what enters at y_j, seen at y_i.
-MatrixXcd sensitivity(const PlantMatrix& plants, const std::vector<ParallelPid>& controllers, double omega) {
-    const auto n = Index(plants.size());
-    const Complex s(0, omega);
-    MatrixXcd A = MatrixXcd::Identity(n, n);
-    for (Index j = 0; j < n; ++j) {
-        const Complex C = controller_response(controllers[std::size_t(j)], s);
-        for (Index i = 0; i < n; ++i)
-            if (const auto& plant = plants[std::size_t(i)][std::size_t(j)]) A(i, j) += plant->at(s) * C;
+/// P(j omega), computed once at the frequencies of a grid, which a search visits again and again.
+class PlantResponses {
+public:
+    PlantResponses(const PlantMatrix& plants, std::vector<double> grid) : plants_(plants), omega_(std::move(grid)) {
+        for (const double omega : omega_) on_grid_.push_back(computed(omega));
     }
+
+    const std::vector<double>& grid() const { return omega_; }
+
+    Response at(double omega) const {
+        const auto found = std::ranges::lower_bound(omega_, omega);
+        return found != omega_.end() && *found == omega ? on_grid_[std::size_t(found - omega_.begin())]
+                                                        : computed(omega);
+    }
+
+private:
+    Response computed(double omega) const {
+        const auto n = Index(plants_.size());
+        Response out = Response::Zero(n, n);
+        for (Index i = 0; i < n; ++i)
+            for (Index j = 0; j < n; ++j)
+                if (const auto& plant = plants_[std::size_t(i)][std::size_t(j)])
+                    out(i, j) = plant->at(Complex(0, omega));
+        return out;
+    }
+
+    const PlantMatrix& plants_;
+    std::vector<double> omega_;
+    std::vector<Response> on_grid_;
+};
+
+/// The sensitivity at the outputs: what enters at y_j, seen at y_i.
+Response sensitivity(const PlantResponses& plants, const std::vector<ParallelPid>& controllers, double omega) {
+    Response A = plants.at(omega);
+    for (Index j = 0; j < A.cols(); ++j)
+        A.col(j) *= controller_response(controllers[std::size_t(j)], Complex(0, omega));
+    A.diagonal().array() += 1;
     return A.inverse();
 }
 
@@ -100,10 +134,10 @@ std::vector<double> grid_of(const PlantMatrix& plants, int per_decade) {
     return logarithmic(kBelow * low, kAbove * high, per_decade);
 }
 
-Peak mu_peak(const PlantMatrix& plants, const std::vector<IdealPid>& controllers, int per_decade) {
+Peak mu_peak(const PlantResponses& plants, const std::vector<IdealPid>& controllers) {
     const auto gains = parallel(controllers);
     const auto peaks = local_peaks(
-        grid_of(plants, per_decade),
+        plants.grid(),
         [&](double omega, std::vector<double>& excess) {
             excess = {std::log(structured_value(sensitivity(plants, gains, omega)))};
         },
@@ -115,11 +149,11 @@ Peak mu_peak(const PlantMatrix& plants, const std::vector<IdealPid>& controllers
 }
 
 /// 20 log10 of max |W/(1 + W)|, W = det(I + P C) - 1: 1/(1 + W) is the determinant of S.
-double log_modulus(const PlantMatrix& plants, const std::vector<IdealPid>& controllers) {
+double log_modulus(const PlantResponses& plants, const std::vector<IdealPid>& controllers) {
     const auto gains = parallel(controllers);
     double most = -kInfinity;
     const auto peaks = local_peaks(
-        grid_of(plants, kPerDecade),
+        plants.grid(),
         [&](double omega, std::vector<double>& excess) {
             excess = {std::log(std::abs(1.0 - sensitivity(plants, gains, omega).determinant()))};
         },
@@ -174,7 +208,11 @@ class InteractionSearch {
 public:
     InteractionSearch(const PlantMatrix& plants, const InteractionDesign& design, const std::vector<IdealPid>& start,
                       const RunControl& control)
-        : plants_(plants), design_(design), settings_(start), grid_(grid_of(plants, kPerDecade)), control_(control) {}
+        : plants_(plants),
+          responses_(plants, grid_of(plants, kPerDecade)),
+          design_(design),
+          settings_(start),
+          control_(control) {}
 
     LimitedResult run() const {
         LimitedProblem problem;
@@ -182,7 +220,7 @@ public:
         problem.peaks = [&](const VectorXd& x) {
             const auto gains = parallel(settings_.at(x));
             return local_peaks(
-                grid_,
+                responses_.grid(),
                 [&](double omega, std::vector<double>& excess) { excess = {excess_at(gains, omega)}; }, kLeastPeak);
         };
         problem.excess_at = [&](const VectorXd& x, int, double omega) {
@@ -198,7 +236,7 @@ public:
 
 private:
     double excess_at(const std::vector<ParallelPid>& gains, double omega) const {
-        return std::log(structured_value(sensitivity(plants_, gains, omega)) / design_.mu);
+        return std::log(structured_value(sensitivity(responses_, gains, omega)) / design_.mu);
     }
 
     double log_cost(const std::vector<IdealPid>& controllers) const {
@@ -218,9 +256,9 @@ private:
     }
 
     const PlantMatrix& plants_;
+    PlantResponses responses_;
     const InteractionDesign& design_;
     Settings settings_;
-    std::vector<double> grid_;
     const RunControl& control_;
 };
 
@@ -236,13 +274,14 @@ std::vector<IdealPid> with_kind(std::vector<IdealPid> controllers, bool derivati
 /// Weaker and weaker until mu holds; empty: never.
 std::optional<std::vector<IdealPid>> detuned(const PlantMatrix& plants, std::vector<IdealPid> controllers, double mu) {
     const auto at_full = controllers;
+    const PlantResponses responses(plants, grid_of(plants, kPerDecade));
     for (const double weaker : kWeaker) {
         for (std::size_t i = 0; i < controllers.size(); ++i) {
             controllers[i].Kp = weaker * at_full[i].Kp;
             controllers[i].Ti = at_full[i].Ti / std::sqrt(weaker);
         }
         if (!stable_with(plants, controllers, all_loops(plants))) continue;
-        if (mu_peak(plants, controllers, kPerDecade).value <= mu * 1.2) return controllers;
+        if (mu_peak(responses, controllers).value <= mu) return controllers;
     }
     return std::nullopt;
 }
@@ -262,9 +301,31 @@ std::vector<std::vector<IdealPid>> starts_of(const std::vector<IdealPid>& first)
     return out;
 }
 
+/// The method robust for each loop alone.
+Expected<std::vector<IdealPid>> single_settings(const PlantMatrix& plants, double Ms, const RunControl& control) {
+    std::vector<IdealPid> out;
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+        auto settings = robust_settings(*plants[i][i], {.Ms = Ms, .Mt = Ms}, control);
+        if (!settings) return Error{settings.error().kind, "plant/" + std::to_string(i), settings.error().message};
+        out.push_back(*settings);
+    }
+    return out;
+}
+
+std::optional<Error> without_diagonal(const PlantMatrix& plants) {
+    for (std::size_t i = 0; i < plants.size(); ++i)
+        if (!plants[i][i])
+            return Error{ErrorKind::invalid_argument, "pairing",
+                         "The pairing gives output " + std::to_string(i + 1) +
+                             " an input that does not move it. Choose another pairing, or leave it out: the best one "
+                             "is then chosen."};
+    return std::nullopt;
+}
+
 }  // namespace
 
 Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const std::vector<IdealPid>& controllers) {
+    if (auto error = without_diagonal(plants)) return *error;
     const auto n = Index(plants.size());
     const auto diagram = diagram_of(plants, controllers, all_loops(plants));
     if (!diagram) return diagram.error();
@@ -276,9 +337,11 @@ Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const 
             if (((closed >> i) & 1u) != 0) loops.push_back(i);
         out.unstable_subsets.push_back(std::move(loops));
     }
+    for (unsigned i = 0; i < plants.size(); ++i)
+        out.may_open.push_back(stable_with(plants, controllers, all_loops(plants) & ~(1u << i)));
     out.stable = stable_with(plants, controllers, all_loops(plants));
     if (!out.stable) return out;
-    out.IAE_setpoint = out.IAE_load = MatrixXd::Zero(n, n);
+    out.IAE_setpoint = out.IAE_load = Table(std::size_t(n), std::vector<double>(std::size_t(n)));
     for (Index i = 0; i < n; ++i) {
         const auto k = std::size_t(i);
         const DiagramLoop closed(diagram->blocks, diagram->u[k]);
@@ -289,28 +352,32 @@ Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const 
         for (Index j = 0; j < n; ++j) {
             const auto m = std::size_t(j);
             const auto load = step_figures(diagram->blocks, diagram->u[m], diagram->y[k], diagram->u[k], 0);
-            const auto moved = step_figures(diagram->blocks, diagram->r[m], diagram->y[k], diagram->u[k], i == j ? 1 : 0);
+            const auto moved =
+                step_figures(diagram->blocks, diagram->r[m], diagram->y[k], diagram->u[k], i == j ? 1 : 0);
             if (!load) return load.error();
             if (!moved) return moved.error();
-            out.IAE_load(j, i) = load->IAE;
-            out.IAE_setpoint(j, i) = moved->IAE;
+            out.IAE_load[m][k] = load->IAE;
+            out.IAE_setpoint[m][k] = moved->IAE;
         }
     }
-    const Peak peak = mu_peak(plants, controllers, kPerDecadeJudged);
+    const PlantResponses responses(plants, grid_of(plants, kPerDecadeJudged));
+    const Peak peak = mu_peak(responses, controllers);
     out.mu = peak.value;
     out.omega_mu = peak.omega;
-    out.log_modulus = log_modulus(plants, controllers);
+    out.log_modulus = log_modulus(responses, controllers);
     return out;
 }
 
 Expected<BltSettings> blt(const PlantMatrix& plants) {
+    if (auto error = without_diagonal(plants)) return *error;
     std::vector<UltimatePoint> points;
     for (std::size_t i = 0; i < plants.size(); ++i) {
         const auto point = ultimate_point(*plants[i][i]);
         if (!point)
             return Error{ErrorKind::numerical_failure, "plant/" + std::to_string(i),
-                         "Plant " + std::to_string(i + 1) + " of the diagonal has no ultimate gain: without dead time "
-                         "and with less than three lags no gain makes it oscillate."};
+                         "Plant " + std::to_string(i + 1) +
+                             " of the diagonal has no ultimate gain: without dead time "
+                             "and with less than three lags no gain makes it oscillate."};
         points.push_back(*point);
     }
     const auto at = [&](double F) {
@@ -320,11 +387,12 @@ Expected<BltSettings> blt(const PlantMatrix& plants) {
         return out;
     };
     // The modulus falls as F grows; below the least stable F it says nothing.
+    const PlantResponses responses(plants, grid_of(plants, kPerDecade));
     const double wanted = kDecibels * double(plants.size());
     double low = kLeastF, high = kMostF;
     for (int i = 0; i < 60; ++i) {
         const double F = std::sqrt(low * high);
-        const bool enough = stable_with(plants, at(F), all_loops(plants)) && log_modulus(plants, at(F)) < wanted;
+        const bool enough = stable_with(plants, at(F), all_loops(plants)) && log_modulus(responses, at(F)) < wanted;
         (enough ? high : low) = F;
     }
     return BltSettings{at(high), high};
@@ -334,14 +402,16 @@ Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const 
                                                const RunControl& control) {
     const auto gains = analyse_gains(plants);
     if (!gains) return gains.error();
+    if (auto error = without_diagonal(plants)) return *error;
     const auto luyben = blt(plants);
-    if (!luyben) return luyben.error();
     InteractionResult out;
-    out.blt = luyben->controllers;
-    out.F = luyben->F;
+    out.blt = luyben ? OrReason<BltSettings>(*luyben) : OrReason<BltSettings>({}, luyben.error().message);
+    const auto single =
+        luyben ? Expected<std::vector<IdealPid>>(luyben->controllers) : single_settings(plants, design.mu, control);
+    if (!single) return single.error();
     double least = kInfinity;
-    for (const auto& start : starts_of(luyben->controllers)) {
-        const auto first = detuned(plants, with_kind(start, design.derivative), design.mu);
+    for (const auto& start : starts_of(*single)) {
+        const auto first = detuned(plants, with_kind(start, design.derivative), kStartAbove * design.mu);
         if (!first) continue;
         const InteractionSearch search(plants, design, *first, control);
         const LimitedResult found = search.run();
@@ -352,11 +422,13 @@ Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const 
         }
         if (found.stopped) break;
     }
+    if (out.controllers.empty() && out.partial)
+        return Error{ErrorKind::cancelled, "", "The search was stopped before it found settings."};
     if (out.controllers.empty())
         return Error{ErrorKind::no_feasible_controller, "limit/mu",
                      "No settings were found that keep mu within its limit with every loop stable; allow a larger mu, "
                      "or another pairing."};
-    if (const auto weaker = detuned(plants, luyben->controllers, design.mu)) out.detuned = *weaker;
+    if (const auto weaker = detuned(plants, *single, design.mu)) out.detuned = *weaker;
     auto figures = judge_interaction(plants, out.controllers);
     if (!figures) return figures.error();
     out.figures = std::move(*figures);

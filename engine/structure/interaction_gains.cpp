@@ -1,12 +1,15 @@
+#include "engine/structure/interaction_gains.h"
+
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <numeric>
+#include <string>
 
 #include "engine/loop/margins.h"
-#include "engine/structure/interaction.h"
 
 namespace tunewright::structure {
 namespace {
@@ -15,7 +18,7 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-constexpr double kSingular = 1e-10;  // reciprocal condition of the scaled gains
+constexpr double kSingular = 1e-10;  // smallest over largest singular value of the scaled gains
 
 std::optional<Error> refused(const PlantMatrix& plants) {
     const std::size_t n = plants.size();
@@ -40,7 +43,8 @@ MatrixXd steady_gains(const PlantMatrix& plants) {
         for (const auto& plant : plants[std::size_t(i)])
             if (plant) integrators = std::max(integrators, plant->integrators());
         for (Index j = 0; j < n; ++j)
-            if (const auto& plant = plants[std::size_t(i)][std::size_t(j)]; plant && plant->integrators() == integrators)
+            if (const auto& plant = plants[std::size_t(i)][std::size_t(j)];
+                plant && plant->integrators() == integrators)
                 K(i, j) = plant->low_frequency_gain();
     }
     return K;
@@ -67,8 +71,15 @@ double crossover(const PlantMatrix& plants) {
     return count > 0 ? std::exp(sum / count) : 0;
 }
 
-/// With integral action in all loops a negative index means instability (Niederlinski 1971); so does a negative relative
-/// gain, in the loop alone or when it is opened.
+Table table_of(const MatrixXd& matrix) {
+    Table out(std::size_t(matrix.rows()));
+    for (Index i = 0; i < matrix.rows(); ++i)
+        for (Index j = 0; j < matrix.cols(); ++j) out[std::size_t(i)].push_back(matrix(i, j));
+    return out;
+}
+
+/// With integral action in all loops a negative index means instability (Niederlinski 1971); so does a negative
+/// relative gain, in the loop alone or when it is opened.
 bool is_possible(const Pairing& pairing) {
     if (pairing.niederlinski && *pairing.niederlinski < 0) return false;
     return std::ranges::all_of(pairing.relative, [](double gain) { return gain > 0; });
@@ -79,42 +90,44 @@ bool is_possible(const Pairing& pairing) {
 Expected<GainAnalysis> analyse_gains(const PlantMatrix& plants) {
     if (auto error = refused(plants)) return *error;
     GainAnalysis out;
-    out.gain = steady_gains(plants);
-    const MatrixXd rows = out.gain.cwiseAbs().rowwise().maxCoeff();
-    const MatrixXd scaled = rows.cwiseMax(1e-300).cwiseInverse().asDiagonal() * out.gain;
-    const Eigen::FullPivLU<MatrixXd> lu(scaled);
-    if (!(lu.rcond() > kSingular))
+    const MatrixXd gain = steady_gains(plants);
+    const MatrixXd rows = gain.cwiseAbs().rowwise().maxCoeff();
+    const MatrixXd scaled = rows.cwiseMax(1e-300).cwiseInverse().asDiagonal() * gain;
+    const Eigen::VectorXd sizes = Eigen::JacobiSVD<MatrixXd>(scaled).singularValues();
+    if (!(sizes.minCoeff() > kSingular * sizes.maxCoeff()))
         return Error{ErrorKind::invalid_argument, "plant",
                      "The gains at steady state do not determine the inputs: their matrix is singular. No controllers "
                      "hold all outputs at once."};
-    out.relative = relative_gains(out.gain);
-    const Eigen::JacobiSVD<MatrixXd> svd(out.gain);
-    out.condition = svd.singularValues()(0) / svd.singularValues()(out.gain.rows() - 1);
+    const MatrixXd relative = relative_gains(gain);
+    out.gain = table_of(gain);
+    out.relative = table_of(relative);
+    const Eigen::JacobiSVD<MatrixXd> svd(gain);
+    out.condition = svd.singularValues()(0) / svd.singularValues()(gain.rows() - 1);
     const double omega = crossover(plants);
-    MatrixXcd at(out.gain.rows(), out.gain.cols());
+    MatrixXcd at(gain.rows(), gain.cols());
     for (Index i = 0; i < at.rows(); ++i)
         for (Index j = 0; j < at.cols(); ++j) {
             const auto& plant = plants[std::size_t(i)][std::size_t(j)];
             at(i, j) = plant ? plant->at(std::complex<double>(0, omega)) : 0;
         }
-    const MatrixXcd dynamic = omega > 0 ? relative_gains(at) : MatrixXcd(out.relative.cast<std::complex<double>>());
+    const MatrixXcd dynamic = omega > 0 ? relative_gains(at) : MatrixXcd(relative.cast<std::complex<double>>());
     std::vector<int> inputs(plants.size());
     std::iota(inputs.begin(), inputs.end(), 0);
     do {
         Pairing pairing;
         pairing.input_of = inputs;
         double product = 1;
-        MatrixXd paired(out.gain.rows(), out.gain.cols());
+        MatrixXd paired(gain.rows(), gain.cols());
         for (Index i = 0; i < paired.rows(); ++i) {
             const Index j = inputs[std::size_t(i)];
-            paired.col(i) = out.gain.col(j);
-            product *= out.gain(i, j);
-            pairing.relative.push_back(out.relative(i, j));
+            paired.col(i) = gain.col(j);
+            product *= gain(i, j);
+            pairing.relative.push_back(relative(i, j));
             pairing.at_crossover.push_back(std::abs(dynamic(i, j)));
-            pairing.distance += std::abs(out.relative(i, j) - 1) + std::abs(dynamic(i, j) - 1.0);
+            pairing.distance += std::abs(relative(i, j) - 1) + std::abs(dynamic(i, j) - 1.0);
         }
-        pairing.niederlinski = product != 0 ? Figure(paired.determinant() / product)
-                                            : no_figure("A pair has no gain at steady state.");
+        pairing.niederlinski =
+            product != 0 ? Figure(paired.determinant() / product) : no_figure("A pair has no gain at steady state.");
         pairing.possible = product != 0 && is_possible(pairing);
         out.pairings.push_back(std::move(pairing));
     } while (std::next_permutation(inputs.begin(), inputs.end()));

@@ -53,25 +53,29 @@ LevelDesign of_zeta(const LevelProblem& problem, double zeta) {
     return judge_level(problem, Kc, 2 * zeta / w);
 }
 
+/// The gain of a proportional controller that uses the room outside the gap.
+double gain_alone(const LevelProblem& problem) { return problem.step / (problem.allowed - problem.gap); }
+
 std::optional<Error> refused(const LevelProblem& problem) {
     const auto positive = [](const char* where, double value) -> std::optional<Error> {
         if (value > 0 && std::isfinite(value)) return std::nullopt;
         return Error{ErrorKind::invalid_argument, where,
                      std::string(where) + " is " + text(value) + "; it must be above 0."};
     };
-    if (auto error = positive("area", problem.area)) return error;
-    if (auto error = positive("step", problem.step)) return error;
+    if (auto error = positive("volume", problem.area)) return error;
+    if (auto error = positive("largest_step", problem.step)) return error;
     if (auto error = positive("allowed", problem.allowed)) return error;
     if (auto error = positive("zeta", problem.zeta)) return error;
     if (!(problem.gap >= 0 && problem.gap < problem.allowed))
         return Error{ErrorKind::invalid_argument, "gap",
                      "gap is " + text(problem.gap) + "; it must be at least 0 and below the allowed deviation " +
                          text(problem.allowed) + "."};
-    if (problem.gap > 0 && problem.aim != LevelAim::no_overshoot)
+    if (problem.gap > 0 && problem.aim != LevelAim::no_overshoot && !problem.given)
         return Error{ErrorKind::invalid_argument, "gap",
-                     "A gap is for proportional action alone; give the aim no_overshoot, or no gap."};
+                     "A gap is for proportional action alone; give the aim no_outflow_overshoot, or no gap."};
     if (problem.flow && !(problem.flow->T >= 0 && problem.flow->L >= 0))
-        return Error{ErrorKind::invalid_argument, "flow", "The lag and the dead time of the flow loop must not be below 0."};
+        return Error{ErrorKind::invalid_argument, "flow_loop",
+                     "The lag and the dead time of the flow loop must not be below 0."};
     return std::nullopt;
 }
 
@@ -87,6 +91,16 @@ Figure Ms_of(const LevelProblem& problem, const LevelDesign& design) {
     const auto loop = Loop::make(*linear, to_parallel(IdealPid{.Kp = design.Kc, .Ti = design.Ti}));
     if (const auto peaks = stable_peaks(loop)) return peaks->S.value;
     return no_figure("With this flow loop the level is not stable: allow it more room.");
+}
+
+LevelDesign design_of(const LevelProblem& problem) {
+    if (problem.given) return judge_level(problem, problem.given->Kc, problem.given->Ti.value_or(kInfinity));
+    switch (problem.aim) {
+        case LevelAim::rate: return of_zeta(problem, kLowestRateZeta);
+        case LevelAim::zeta: return of_zeta(problem, problem.zeta);
+        case LevelAim::no_overshoot: break;
+    }
+    return judge_level(problem, gain_alone(problem), kInfinity);
 }
 
 }  // namespace
@@ -111,15 +125,10 @@ Expected<LevelResult> design_level(const LevelProblem& problem) {
     if (auto error = refused(problem)) return *error;
     LevelResult out;
     out.bound = bound_of(problem);
-    const double Kc_alone = problem.step / (problem.allowed - problem.gap);
-    switch (problem.aim) {
-        case LevelAim::rate: out.design = of_zeta(problem, kLowestRateZeta); break;
-        case LevelAim::zeta: out.design = of_zeta(problem, problem.zeta); break;
-        case LevelAim::no_overshoot: out.design = judge_level(problem, Kc_alone, kInfinity); break;
-    }
+    out.design = design_of(problem);
     out.Ms = Ms_of(problem, out.design);
     for (const double zeta : kFrontier) out.frontier.push_back(of_zeta(problem, zeta));
-    out.frontier.push_back(judge_level(problem, Kc_alone, kInfinity));
+    out.frontier.push_back(judge_level(problem, gain_alone(problem), kInfinity));
     return out;
 }
 

@@ -28,6 +28,11 @@ struct FlowLoop {
     double T = 0, L = 0;  ///< lag and dead time, >= 0
 };
 
+struct LevelSettings {
+    double Kc = 1;                  ///< flow per level, > 0
+    std::optional<double> Ti = {};  ///< > 0; empty: proportional action alone
+};
+
 struct LevelProblem {
     double area = 1;     ///< volume per unit of level, > 0
     double step = 1;     ///< D, the largest step of the inflow, > 0
@@ -35,17 +40,18 @@ struct LevelProblem {
     LevelAim aim = LevelAim::rate;
     double zeta = 0.4;  ///< for LevelAim::zeta, > 0
     double gap = 0;     ///< deviation within which a proportional controller rests, 0 <= gap < allowed
-    std::optional<FlowLoop> flow;
+    std::optional<FlowLoop> flow = {};
+    std::optional<LevelSettings> given = {};  ///< judged, in place of a design
 };
 
 struct LevelDesign {
-    double Kc = 0;                           ///< flow per level
-    double Ti = 0;                           ///< infinite: proportional action alone
-    double zeta = 0, w = 0;                  ///< 0 without integral action
+    double Kc = 0;                            ///< flow per level
+    double Ti = 0;                            ///< infinite: proportional action alone
+    double zeta = 0, w = 0;                   ///< 0 without integral action
     double highest = 0, time_of_highest = 0;  ///< of the level; the time is infinite without integral action
-    double largest_rate = 0;                 ///< of the outflow, flow per time
-    double overshoot_percent = 0;            ///< of the outflow
-    double rate_over_bound = 0;              ///< largest_rate over the bound for any controller
+    double largest_rate = 0;                  ///< of the outflow, flow per time
+    double overshoot_percent = 0;             ///< of the outflow
+    double rate_over_bound = 0;               ///< largest_rate over the bound for any controller
 };
 
 /// The figures of given settings; `Ti` infinite: proportional action alone.

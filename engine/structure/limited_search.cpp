@@ -16,14 +16,14 @@ using Eigen::VectorXd;
 using optimise::LargeProgram;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPenalty = 30;       // d ln(cost)/d ln(limit): larger than the multipliers of usual designs
-constexpr double kNear = -0.3;        // ln of a peak over its limit: a lower one cannot become active within a step
-constexpr double kFar = 0.5;          // beyond it the cost is not worth a simulation
-constexpr double kAim = 2e-7;         // limits are aimed at by this margin
-constexpr double kHeld = 1e-6;        // ln: holds the limit
-constexpr int kCorrections = 4;       // steps back to the curved limits
-constexpr double kOfPeak = 1e-5;      // difference of x, for the gradient of a peak
-constexpr double kSlackSize = 60;     // bound of the elastic unknown
+constexpr double kPenalty = 30;    // d ln(cost)/d ln(limit): larger than the multipliers of usual designs
+constexpr double kNear = -0.3;     // ln of a peak over its limit: a lower one cannot become active within a step
+constexpr double kFar = 0.5;       // beyond it the cost is not worth a simulation
+constexpr double kAim = 2e-7;      // limits are aimed at by this margin
+constexpr double kHeld = 1e-6;     // ln: holds the limit
+constexpr int kCorrections = 4;    // steps back to the curved limits
+constexpr double kOfPeak = 1e-5;   // difference of x, for the gradient of a peak
+constexpr double kSlackSize = 60;  // bound of the elastic unknown
 
 struct State {
     VectorXd x;
@@ -44,7 +44,9 @@ public:
     static constexpr bool kElastic = true;
 
     Search(const LimitedProblem& problem, const LimitedOptions& options)
-        : problem_(problem), options_(options), n_(problem.low.size()),
+        : problem_(problem),
+          options_(options),
+          n_(problem.low.size()),
           H_(optimise::kSqp.first_curvature * MatrixXd::Identity(n_, n_)) {}
 
     LimitedResult run(const VectorXd& start) {
@@ -117,7 +119,8 @@ public:
             const double weight = step.multipliers[Index(i)];
             if (!(weight > 0)) continue;
             const auto same = std::ranges::find_if(next.peaks, [&](const LimitedPeak& peak) {
-                return peak.function == now.peaks[i].function && std::abs(std::log(peak.omega / now.peaks[i].omega)) < 0.3;
+                return peak.function == now.peaks[i].function &&
+                       std::abs(std::log(peak.omega / now.peaks[i].omega)) < 0.3;
             });
             if (same != next.peaks.end())
                 y += weight * (next.slopes.col(same - next.peaks.begin()) - now.slopes.col(Index(i)));

@@ -1,8 +1,8 @@
 // The least cost of a few settings under limits on peaks over frequency: settings of loops that are closed together.
 //
-// Sequential quadratic programming (numerics/optimise/sqp.h) over the logarithms of the settings. The cost's gradient is
-// a difference; that of a peak is the derivative of the function at the peak's frequency, because the peak is a maximum
-// over frequency (Danskin 1967).
+// Sequential quadratic programming (numerics/optimise/sqp.h) over the logarithms of the settings. The cost's gradient
+// is a difference; that of a peak is the derivative of the function at the peak's frequency, because the peak is a
+// maximum over frequency (Danskin 1967).
 #pragma once
 
 #include <Eigen/Core>
@@ -23,8 +23,8 @@ struct LimitedPeak {
 struct LimitedProblem {
     /// ln of the cost at x; infinite where the loops are not stable.
     std::function<double(const Eigen::VectorXd& x)> log_cost;
-    /// Local maxima of all functions at x, those near their limits at least; the cost is not asked for where one of them
-    /// exceeds its limit by far.
+    /// Local maxima of all functions at x, those near their limits at least; the cost is not asked for where one of
+    /// them exceeds its limit by far.
     std::function<std::vector<LimitedPeak>(const Eigen::VectorXd& x)> peaks;
     /// ln of one function over its limit at one frequency.
     std::function<double(const Eigen::VectorXd& x, int function, double omega)> excess_at;

@@ -6,8 +6,8 @@
 namespace tunewright::structure {
 namespace {
 
-constexpr int kRefinements = 12;       // parabolas through three points
-constexpr double kConverged = 1e-6;    // of ln omega: the value is flat there
+constexpr int kRefinements = 12;     // parabolas through three points
+constexpr double kConverged = 1e-6;  // of ln omega: the value is flat there
 
 struct Point {
     double x, value;  // x: ln omega

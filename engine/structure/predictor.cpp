@@ -12,7 +12,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/number_text.h"
 #include "engine/structure/local_peaks.h"
-#include "engine/tuning/robust/robust.h"
+#include "engine/structure/loop_design.h"
 
 namespace tunewright::structure {
 namespace {
@@ -22,10 +22,10 @@ using Complex = std::complex<double>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kQuickest = 0.02, kSlowest = 50;  // of L + |T|: lambda and Tf
 constexpr int kHalvings = 60;
-constexpr int kPerDecade = 400;                    // frequencies at which |S| = |T| is looked for
-constexpr double kLow = 1e-3, kHigh = 1e3;         // of 1/L
-constexpr double kAsWell = 1.02;                   // IAE of the PID over that of the predictor
+constexpr int kPerDecade = 400;             // frequencies at which |S| = |T| is looked for
+constexpr double kLow = 1e-3, kHigh = 1e3;  // of 1/L
 constexpr double kMostMs = 1.99;
+constexpr double kBesideZero = 1e-5;  // of 1/time scale: the controller's own integrator is left of it
 
 using OverFrequency = std::function<Complex(double)>;
 
@@ -45,13 +45,8 @@ Expected<LinearPlant> block(const Rational& r, double gain = 1, double L = 0) {
     return LinearPlant::make(Plant(plant));
 }
 
-Rational model_of(const PredictorModel& m) {
+Rational fraction_of(const PredictorModel& m) {
     return m.integrating ? Rational{{m.K}, {1, 0}} : Rational{{m.K}, {m.T, 1}};
-}
-
-Plant plant_of(const PredictorModel& m) {
-    if (m.integrating) return Ipdt{.K = m.K, .L = m.L};
-    return Fopdt{.K = m.K, .T = m.T, .L = m.L};
 }
 
 /// beta of the filtered predictor.
@@ -74,7 +69,7 @@ double Ms_of(const PredictorModel& m, const OverFrequency& T) {
     double most = 0;
     for (const LimitedPeak& peak : local_peaks(
              logarithmic(kLow / m.L, kHigh / m.L, 60),
-             [&](double omega, std::vector<double>& excess) { excess = {std::log(std::abs(1.0 - T(omega)))}; }, -0.5))
+             [&](double omega, std::vector<double>&excess) { excess = {std::log(std::abs(1.0 - T(omega)))}; }, -0.5))
         most = std::max(most, std::exp(peak.excess));
     return most;
 }
@@ -127,7 +122,7 @@ Expected<Diagram> diagram_of(const LinearPlant* plant, const PredictorController
     out.v = out.blocks.add_signal();
     const int past = out.blocks.add_signal();  // u less its filtered past
     const auto C = block(controller.C), F = block(controller.F, -1), late = block(controller.F, -1, m.L),
-               Gm = block(model_of(m), -1);
+               Gm = block(fraction_of(m), -1);
     for (const auto* part : {&C, &F, &late, &Gm})
         if (!*part) return part->error();
     out.blocks.add(out.v, out.u, *C);
@@ -212,26 +207,39 @@ double smallest_knob(const PredictorModel& m, const PredictorDesign& design, boo
     return std::max(by_Ms, by_error);
 }
 
-void compare_with_pid(const PredictorModel& m, const PredictorDesign& design, const RunControl& control,
+/// The robust PID under the same limit on Ms.
+void compare_with_pid(const LinearPlant& plant, const PredictorDesign& design, const RunControl& control,
                       PredictorResult& out) {
-    const auto plant = LinearPlant::make(plant_of(m));
-    const TuningProblem problem{.plant = plant_of(m), .linear = *plant, .dead_time_std = {}};
-    const auto tuned = tune_robust(problem, {.Ms = design.Ms, .Mt = std::max(design.Ms, limits::kDefaultMt)},
-                                   {control.stop, nullptr, control.now_ms});
-    if (!tuned) {
-        out.pid_IAE = no_figure(tuned.error().message);
+    const auto settings = robust_settings(
+        plant, {.controller = ControllerKind::PID, .Ms = design.Ms, .Mt = std::max(design.Ms, limits::kDefaultMt)},
+        control);
+    if (!settings) {
+        out.pid_IAE = no_figure(settings.error().message);
         return;
     }
-    out.pid = tuned->controller;
+    out.pid = *settings;
     BlockDiagram loop;
     const int y = loop.add_signal();
-    const auto pid = add_pid(loop, to_parallel(tuned->controller), y);
+    const auto pid = add_pid(loop, to_parallel(*settings), y);
     if (!pid) return;
-    loop.add(pid->output, y, *plant);
-    const auto figures = step_figures(loop, pid->output, y, pid->output, 0);
-    if (!figures) return;
-    out.pid_IAE = figures->IAE;
-    out.pid_does_as_well = figures->IAE <= kAsWell * out.figures.load.IAE;
+    loop.add(pid->output, y, plant);
+    if (const auto figures = step_figures(loop, pid->output, y, pid->output, 0)) out.pid_IAE = figures->IAE;
+}
+
+/// Figures after unit steps of load and set point. On an unstable model nothing is simulated: the model cancels its own
+/// past only up to rounding, and what is left grows without bound.
+std::optional<Error> add_responses(const Diagram& diagram, const PredictorModel& model, PredictorFigures& out) {
+    if (!model.integrating && model.T < 0) {
+        out.load = out.setpoint = OrReason<StepFigures>({}, "Responses are not simulated on an unstable model.");
+        return std::nullopt;
+    }
+    const auto load = step_figures(diagram.blocks, diagram.plant_input, diagram.y, diagram.u, 0);
+    if (!load) return load.error();
+    out.load = *load;
+    const auto setpoint = step_figures(diagram.blocks, diagram.v, diagram.y, diagram.u, 1);
+    if (!setpoint) return setpoint.error();
+    out.setpoint = *setpoint;
+    return std::nullopt;
 }
 
 }  // namespace
@@ -241,7 +249,7 @@ Expected<PredictorFigures> judge_predictor(const LinearPlant& plant, const Predi
     if (!diagram) return diagram.error();
     const auto alone = diagram_of(nullptr, controller);
     PredictorFigures out;
-    out.controller_unstable_poles = count_unstable_poles(alone->blocks).unstable_poles;
+    out.controller_unstable_poles = count_unstable_poles(alone->blocks, kBesideZero).unstable_poles;
     out.stable = count_unstable_poles(diagram->blocks).stable();
     out.dead_time_up = out.dead_time_down = no_figure("The loop is not stable.");
     if (!out.stable) return out;
@@ -251,30 +259,34 @@ Expected<PredictorFigures> judge_predictor(const LinearPlant& plant, const Predi
     out.Mt = peaks.T.value;
     const double L = std::max(plant.dead_time(), 1e-6 * plant.time_scale());
     const Window window = window_of([&](double omega) { return at_plant.at(omega).T; }, fine_grid(L));
-    out.dead_time_up = std::isfinite(window.up) ? Figure(window.up) : no_figure("No later dead time makes it unstable.");
+    out.dead_time_up =
+        std::isfinite(window.up) ? Figure(window.up) : no_figure("No later dead time makes it unstable.");
     out.dead_time_down = std::min(window.down, plant.dead_time());
-    const auto load = step_figures(diagram->blocks, diagram->plant_input, diagram->y, diagram->u, 0);
-    if (!load) return load.error();
-    out.load = *load;
-    const auto setpoint = step_figures(diagram->blocks, diagram->v, diagram->y, diagram->u, 1);
-    if (!setpoint) return setpoint.error();
-    out.setpoint = *setpoint;
+    if (auto error = add_responses(*diagram, controller.model, out)) return *error;
     return out;
 }
 
-Expected<PredictorResult> design_predictor(const PredictorModel& model, const PredictorDesign& design,
-                                           const RunControl& control) {
+std::optional<PredictorModel> model_of(const LinearPlant& plant) {
+    if (!plant.zeros().empty()) return std::nullopt;
+    const bool integrating = plant.integrators() == 1 && plant.poles().empty();
+    if (!integrating && (plant.integrators() != 0 || plant.poles().size() != 1)) return std::nullopt;
+    return PredictorModel{.K = plant.low_frequency_gain(),
+                          .T = integrating ? 1 : -1 / plant.poles().front().real(),
+                          .L = plant.dead_time(),
+                          .integrating = integrating};
+}
+
+Expected<PredictorResult> design_predictor(const PredictorModel& model, const LinearPlant& plant,
+                                           const PredictorDesign& design, const RunControl& control) {
     if (auto error = refused(model, design)) return *error;
     PredictorResult out;
     const bool fixed = design.kind == PredictorKind::predictive_pi;
     const double knob = fixed ? model.T : smallest_knob(model, design, out.limited_by_dead_time);
     out.controller = controller_of(model, design.kind, knob);
-    const auto plant = LinearPlant::make(plant_of(model));
-    if (!plant) return plant.error();
-    auto figures = judge_predictor(*plant, out.controller);
+    auto figures = judge_predictor(plant, out.controller);
     if (!figures) return figures.error();
     out.figures = std::move(*figures);
-    compare_with_pid(model, design, control, out);
+    compare_with_pid(plant, design, control, out);
     return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/blocks/diagram_response.h"
 #include "engine/simulation/linear/indices.h"
 
 namespace tunewright::structure {
@@ -13,8 +14,8 @@ constexpr double kQuickTolerance = 3e-5, kQuickSettled = 1e-4;
 
 std::vector<double> quick_IAEs_of(const BlockDiagram& diagram, int enters_at, const std::vector<int>& outputs,
                                   double target) {
-    const auto response = DiagramResponse::of(diagram, {{enters_at, 1}},
-                                              {.tolerance = kQuickTolerance, .settled = kQuickSettled, .max_steps = 20000});
+    const auto response = DiagramResponse::of(
+        diagram, {{enters_at, 1}}, {.tolerance = kQuickTolerance, .settled = kQuickSettled, .max_steps = 20000});
     std::vector<double> out(outputs.size(), std::numeric_limits<double>::infinity());
     if (!response || !response->settles()) return out;
     for (std::size_t i = 0; i < out.size(); ++i) {
@@ -35,8 +36,7 @@ Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, i
     StepFigures figures{.IAE = integrals.IAE, .ISE = integrals.ISE, .TV = total_variation(nodes.nodes)};
     figures.IE = nodes.error_integral_final.value_or(nodes.nodes.back().error_integral);
     figures.peak = std::abs(extremes.min) > std::abs(extremes.max) ? extremes.min : extremes.max;
-    if (target != 0)
-        figures.overshoot = std::max(0.0, (target > 0 ? extremes.max : extremes.min) / target - 1);
+    if (target != 0) figures.overshoot = std::max(0.0, (target > 0 ? extremes.max : extremes.min) / target - 1);
     figures.settles = nodes.settles;
     return figures;
 }

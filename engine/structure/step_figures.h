@@ -3,16 +3,19 @@
 
 #include <vector>
 
-#include "engine/blocks/diagram_response.h"
 #include "engine/expected.h"
+
+namespace tunewright {
+class BlockDiagram;
+}
 
 namespace tunewright::structure {
 
 /// Of a unit step that enters at one signal; TV of what the controller adds at another.
 struct StepFigures {
     double IAE = 0, ISE = 0, TV = 0;
-    double IE = 0;        ///< integral of the error
-    double peak = 0;      ///< of y, the farther of both sides
+    double IE = 0;         ///< integral of the error
+    double peak = 0;       ///< of y, the farther of both sides
     double overshoot = 0;  ///< of y beyond a target that is not 0, as a share of it
     bool settles = true;
 };

@@ -9,12 +9,13 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXcd;
+using Matrix = Eigen::Ref<const MatrixXcd>;
 
 constexpr int kMostSteps = 60;
 constexpr double kConverged = 1e-11;  // of ln of the value
 
 /// ln of the largest singular value of D S D^-1, D = exp(diag(d)), and its gradient over d.
-double log_value(const MatrixXcd& S, const Eigen::VectorXd& d, Eigen::VectorXd& gradient) {
+double log_value(const Matrix& S, const Eigen::VectorXd& d, Eigen::VectorXd& gradient) {
     const Eigen::VectorXd scale = d.array().exp();
     const MatrixXcd A = scale.asDiagonal() * S * scale.cwiseInverse().asDiagonal();
     const Eigen::SelfAdjointEigenSolver<MatrixXcd> solver(A.adjoint() * A);
@@ -25,14 +26,14 @@ double log_value(const MatrixXcd& S, const Eigen::VectorXd& d, Eigen::VectorXd& 
     return 0.5 * std::log(square);
 }
 
-double of_two(const MatrixXcd& S) {
+double of_two(const Matrix& S) {
     const double f = std::norm(S(0, 0)) + std::norm(S(1, 1)) + 2 * std::abs(S(0, 1) * S(1, 0));
     const double det = std::norm(S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0));
     return std::sqrt(0.5 * (f + std::sqrt(std::max(0.0, f * f - 4 * det))));
 }
 
 /// Steepest descent over ln D with steps that adapt: the function is convex there.
-double of_more(const MatrixXcd& S) {
+double of_more(const Matrix& S) {
     Eigen::VectorXd d = Eigen::VectorXd::Zero(S.rows()), gradient, next_gradient;
     double value = log_value(S, d, gradient), step = 0.5;
     for (int i = 0; i < kMostSteps && step > 1e-9; ++i) {
@@ -54,7 +55,7 @@ double of_more(const MatrixXcd& S) {
 
 }  // namespace
 
-double structured_value(const MatrixXcd& S) {
+double structured_value(const Matrix& S) {
     if (S.rows() == 1) return std::abs(S(0, 0));
     return S.rows() == 2 ? of_two(S) : of_more(S);
 }

@@ -64,9 +64,9 @@ ROOMS = {
         "outline": {"contract", "json"},
         "shorthand": {"contract", "csv", "json"},
         "registries": {"outcome", "contract", "describe", "formula"},
-        "range_service": {"outcome", "contract", "describe"},
+        "services": {"outcome", "contract", "describe"},
         "check_service": {"outcome", "contract", "historian", "csv", "describe", "json"},
-        "service": {"outcome", "outline", "range_service", "check_service", "shorthand", "contract", "describe", "json"},
+        "service": {"outcome", "outline", "services", "check_service", "shorthand", "contract", "describe", "json"},
         "batch": {"service", "contract", "historian", "csv", "describe", "json"},
     },
     "server": {

@@ -1,0 +1,141 @@
+// Interacting loops: published gains and settings, bounds of the structured peak, designs within their limit.
+#include "engine/structure/interaction.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/structure/interaction_gains.h"
+#include "tests/engine/structure/plants.h"
+
+namespace tunewright::structure {
+namespace {
+
+TEST(InteractionGains, RelativeGainsAndIndicesAreThePublishedOnes) {
+    const auto wood_berry_gains = analyse_gains(wood_berry());
+    ASSERT_TRUE(wood_berry_gains);
+    EXPECT_NEAR(wood_berry_gains->relative[0][0], 12.8 * 19.4 / (12.8 * 19.4 - 18.9 * 6.6), 1e-12);
+    EXPECT_NEAR(wood_berry_gains->relative[0][0], 2.009386632, 1e-8);
+    EXPECT_NEAR(*wood_berry_gains->pairings[0].niederlinski, 0.497664304, 1e-8);
+    EXPECT_EQ(wood_berry_gains->pairings[0].input_of, (std::vector<int>{0, 1}));
+    EXPECT_FALSE(wood_berry_gains->pairings[1].possible);
+
+    // MathWorks, column A in LV: 35.07, condition number 141.7.
+    const auto column = analyse_gains({{first_order(87.8, 75, 0), first_order(-86.4, 75, 0)},
+                                       {first_order(108.2, 75, 0), first_order(-109.6, 75, 0)}});
+    ASSERT_TRUE(column);
+    EXPECT_NEAR(column->relative[0][0], 35.068804665, 1e-6);
+    EXPECT_NEAR(column->condition, 141.73, 0.01);
+}
+
+TEST(InteractionGains, TheCrossedPairingOfTheNonminimumPhaseTanksIsTheBest) {
+    // Johansson (2000): relative gain -0.62 on the diagonal.
+    const auto gains = analyse_gains({{first_order(1.5, 63, 0), transfer({2.5}, {2457, 102, 1})},
+                                      {transfer({2.5}, {5096, 147, 1}), first_order(1.6, 91, 0)}});
+    ASSERT_TRUE(gains);
+    EXPECT_NEAR(gains->relative[0][0], -0.623376623, 1e-8);
+    EXPECT_EQ(gains->pairings[0].input_of, (std::vector<int>{1, 0}));
+    EXPECT_TRUE(gains->pairings[0].possible);
+}
+
+TEST(InteractionGains, AnIntegratingRowHasTheGainsOfItsSlopes) {
+    const auto slope = [](double K) {
+        return std::optional<LinearPlant>(*LinearPlant::make(Plant(Ipdt{.K = K, .L = 1})));
+    };
+    const auto gains = analyse_gains({{slope(2), slope(1)}, {first_order(1, 5, 1), first_order(3, 8, 1)}});
+    ASSERT_TRUE(gains);
+    EXPECT_NEAR(gains->relative[0][0], 6.0 / 5, 1e-12);
+}
+
+TEST(InteractionGains, SingularAndMisshapenMatricesAreRefused) {
+    const auto singular =
+        analyse_gains({{first_order(1, 5, 1), first_order(2, 5, 1)}, {first_order(2, 5, 1), first_order(4, 5, 1)}});
+    ASSERT_FALSE(singular);
+    EXPECT_EQ(singular.error().where, "plant");
+    const auto short_row = analyse_gains({{first_order(1, 5, 1), first_order(2, 5, 1)}, {first_order(2, 5, 1)}});
+    ASSERT_FALSE(short_row);
+    EXPECT_EQ(short_row.error().where, "plant/1");
+    EXPECT_FALSE(analyse_gains({{first_order(1, 5, 1)}}));
+}
+
+TEST(Blt, SettingsAreThoseThatLuybenPrinted) {
+    struct Row {
+        PlantMatrix plants;
+        double F, Kp[2], Ti[2];
+        double last_Kp[2], last_Ti[2];  // units of the last printed digits
+    };
+    const Row rows[] = {{wood_berry(), 2.5446090, {0.375, -0.075}, {8.29, 23.6}, {0.001, 0.001}, {0.01, 0.1}},
+                        {vinante_luyben(), 2.2479787, {-1.07, 1.97}, {7.1, 2.58}, {0.01, 0.01}, {0.1, 0.01}}};
+    for (const Row& row : rows) {
+        const auto settings = blt(row.plants);
+        ASSERT_TRUE(settings);
+        EXPECT_NEAR(settings->F, row.F, 1e-4 * row.F);
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_NEAR(settings->controllers[i].Kp, row.Kp[i], 0.51 * row.last_Kp[i]);
+            EXPECT_NEAR(settings->controllers[i].Ti, row.Ti[i], 0.51 * row.last_Ti[i]);
+        }
+    }
+}
+
+TEST(Interaction, TheFiguresOfLuybensSettingsAreThoseOfAnIndependentProgram) {
+    const auto figures = judge_interaction(wood_berry(), {pi(0.375, 8.29), pi(-0.075, 23.6)});
+    ASSERT_TRUE(figures && figures->stable);
+    EXPECT_NEAR(figures->log_modulus, 3.97569106, 1e-4);
+    EXPECT_NEAR(figures->mu, 1.94893861, 1e-4);
+    EXPECT_NEAR(figures->Ms_alone[0], 1.320317004, 3e-5);
+    EXPECT_NEAR(figures->Ms_alone[1], 1.283138692, 3e-5);
+    EXPECT_NEAR(figures->Ms_others_closed[0], 1.350934876, 3e-5);
+    EXPECT_NEAR(figures->Ms_others_closed[1], 1.501781718, 3e-5);
+    EXPECT_TRUE(figures->unstable_subsets.empty());
+    EXPECT_GE(figures->mu, *std::ranges::max_element(figures->Ms_others_closed));
+}
+
+TEST(Interaction, OneWayInteractionLeavesThePeaksOfTheLoopsAlone) {
+    const PlantMatrix plants{{first_order(2, 8, 2), {}}, {first_order(5, 3, 1), first_order(1, 12, 4)}};
+    const auto figures = judge_interaction(plants, {pi(1.2, 8), pi(1.8, 12)});
+    ASSERT_TRUE(figures && figures->stable);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(figures->Ms_others_closed[i], figures->Ms_alone[i], 1e-6);
+    EXPECT_NEAR(figures->mu, *std::ranges::max_element(figures->Ms_alone), 1e-5);
+    EXPECT_NEAR(figures->IAE_load[1][0], 0, 1e-12) << "the second loop does not move the first output";
+}
+
+TEST(Interaction, APeakSaysNothingAboutStability) {
+    // mu is below 1.8 on Wood and Berry's column with these settings, and two poles are unstable.
+    const auto figures = judge_interaction(wood_berry(), {pi(0.23, 2.8), pi(-0.51, 0.41)});
+    ASSERT_TRUE(figures);
+    EXPECT_FALSE(figures->stable);
+    EXPECT_FALSE(figures->unstable_subsets.empty());
+}
+
+TEST(Interaction, OptimaAreAtMostTwoPerMilleAboveThoseOfAnIndependentSearch) {
+    struct Row {
+        PlantMatrix plants;
+        double mu, cost;
+    };
+    const Row rows[] = {{wood_berry(), 1.8, 114.94}, {vinante_luyben(), 1.6, 6.004}, {vinante_luyben(), 1.8, 4.277}};
+    for (const Row& row : rows) {
+        const auto result = design_interaction(row.plants, {.mu = row.mu}, {});
+        ASSERT_TRUE(result) << result.error().message;
+        double cost = 0;
+        for (const auto& load : result->figures.IAE_load)
+            for (const double IAE : load) cost += IAE;
+        EXPECT_LE(cost, 1.002 * row.cost) << row.mu;
+        EXPECT_LE(result->figures.mu, row.mu * (1 + 1e-5));
+        EXPECT_TRUE(result->figures.stable);
+        EXPECT_TRUE(result->figures.unstable_subsets.empty());
+    }
+}
+
+TEST(Interaction, ADiagonalWithoutAPathIsRefused) {
+    const PlantMatrix plants{{{}, first_order(2, 5, 1)}, {first_order(2, 5, 1), first_order(1, 5, 1)}};
+    const auto figures = judge_interaction(plants, {pi(1, 5), pi(1, 5)});
+    ASSERT_FALSE(figures);
+    EXPECT_EQ(figures.error().where, "pairing");
+}
+
+}  // namespace
+}  // namespace tunewright::structure

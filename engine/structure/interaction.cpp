@@ -49,13 +49,45 @@ struct LoopsDiagram {
     std::vector<int> y, u, r;  ///< r: the controller's error; -1 for a loop in manual
 };
 
+/// The plant times s^n.
+LinearPlant without_integrators(const LinearPlant& plant, int n) {
+    Zpk out = factors_of(plant);
+    for (int i = 0; i < n; ++i) out.poles.erase(std::ranges::find(out.poles, Complex(0)));
+    return std::move(*LinearPlant::make(Plant(out)));
+}
+
+/// Plants from several inputs to one output. Integrators that they share stand behind their sum: as one in each they
+/// would be modes that no controller moves.
+void add_row(BlockDiagram& blocks, const std::vector<std::pair<int, const LinearPlant*>>& row, int y) {
+    int integrating = 0, shared = 0;
+    for (const auto& [u, plant] : row)
+        if (plant->integrators() > 0) {
+            shared = integrating == 0 ? plant->integrators() : std::min(shared, plant->integrators());
+            ++integrating;
+        }
+    if (integrating < 2) shared = 0;
+    const int sum = shared > 0 ? blocks.add_signal() : y;
+    if (shared > 0)
+        blocks.add(sum, y,
+                   std::move(*LinearPlant::make(
+                       Plant(Zpk{.K = 1, .zeros = {}, .poles = std::vector<Complex>(std::size_t(shared))}))));
+    for (const auto& [u, plant] : row)
+        if (shared > 0 && plant->integrators() > 0)
+            blocks.add(u, sum, without_integrators(*plant, shared));
+        else
+            blocks.add(u, y, *plant);
+}
+
+/// Plants of loops in manual are outside every loop and left out: their integrators and unstable poles are not the
+/// loops'.
 Expected<LoopsDiagram> diagram_of(const PlantMatrix& plants, const std::vector<IdealPid>& controllers,
                                   unsigned closed) {
     LoopsDiagram out;
     const std::size_t n = plants.size();
+    const auto is_closed = [closed](std::size_t i) { return ((closed >> i) & 1u) != 0; };
     for (std::size_t i = 0; i < n; ++i) out.y.push_back(out.blocks.add_signal());
     for (std::size_t i = 0; i < n; ++i) {
-        if (((closed >> i) & 1u) == 0) {
+        if (!is_closed(i)) {
             out.u.push_back(out.blocks.add_signal());
             out.r.push_back(-1);
             continue;
@@ -65,9 +97,12 @@ Expected<LoopsDiagram> diagram_of(const PlantMatrix& plants, const std::vector<I
         out.u.push_back(pid->output);
         out.r.push_back(pid->error);
     }
-    for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t i = 0; i < n; ++i) {
+        std::vector<std::pair<int, const LinearPlant*>> row;
         for (std::size_t j = 0; j < n; ++j)
-            if (plants[i][j]) out.blocks.add(out.u[j], out.y[i], *plants[i][j]);
+            if (plants[i][j] && is_closed(i) && is_closed(j)) row.emplace_back(out.u[j], &*plants[i][j]);
+        add_row(out.blocks, row, out.y[i]);
+    }
     return out;
 }
 
@@ -165,7 +200,6 @@ double log_modulus(const PlantResponses& plants, const std::vector<IdealPid>& co
 bool stable_with(const PlantMatrix& plants, const std::vector<IdealPid>& controllers, unsigned closed) {
     const auto diagram = diagram_of(plants, controllers, closed);
     if (!diagram) return false;
-    // Plants of loops in manual are outside every loop: their integrators and unstable poles are not the loops'.
     return count_unstable_poles(diagram->blocks).stable();
 }
 

@@ -21,9 +21,7 @@ using testing::Contains;
 using testing::HasSubstr;
 using Call = Answer (*)(std::string_view, const RunControl&);
 
-Json cascade() {
-    return {{"inner", {{"plant", "2 e^(-s)/(4s+1)"}}}, {"outer", {{"plant", "1.5 e^(-8s)/(30s+1)"}}}};
-}
+Json cascade() { return {{"inner", {{"plant", "2 e^(-s)/(4s+1)"}}}, {"outer", {{"plant", "1.5 e^(-8s)/(30s+1)"}}}}; }
 
 Json level() { return {{"volume", 12}, {"largest_step", 4}, {"allowed", 1.8}}; }
 
@@ -142,9 +140,8 @@ TEST(CascadeCall, ErrorsNameThePlaceAndTheCure) {
                    with(cascade(), "/inner/controller", {{"form", "npid"}, {"Kp", 1}, {"Ti", 3}, {"delta_r", 1}}),
                    "/inner/controller/form", "only linear forms");
     expect_refusal(cascade_call, with(cascade(), "/weights", {{"d1", 2}}), "/weights", "set search to joint");
-    expect_refusal(cascade_call,
-                   with(with(cascade(), "/search", "joint"), "/inner/controller", {{"Kp", 1}, {"Ti", 3}}), "/search",
-                   "take search sequential");
+    expect_refusal(cascade_call, with(with(cascade(), "/search", "joint"), "/inner/controller", {{"Kp", 1}, {"Ti", 3}}),
+                   "/search", "take search sequential");
     expect_refusal(cascade_call, with(with(cascade(), "/search", "joint"), "/weights", {{"d1", 0}, {"d2", 0}}),
                    "/weights", "one of them must be above 0");
     expect_refusal(cascade_call, with(cascade(), "/inner/controller", {{"Kp", 40}, {"Ti", 3}}), "/inner/controller",
@@ -204,7 +201,8 @@ TEST(FeedforwardCall, TheVariantsShareThePeakThatNoneAvoids) {
     for (const Json& one : a["variants"]) kinds.push_back(one["kind"]);
     EXPECT_THAT(kinds, testing::ElementsAre("none", "static", "inverse", "guzman_hagglund", "optimum"));
     EXPECT_NEAR(a["variants"][4]["u_start"].get<double>(), -12, 1e-9);
-    EXPECT_THAT(codes(a), testing::IsSupersetOf({"feedforward-pays", "gain-alone-worse-than-none", "peak-unavoidable"}));
+    EXPECT_THAT(codes(a),
+                testing::IsSupersetOf({"feedforward-pays", "gain-alone-worse-than-none", "peak-unavoidable"}));
 }
 
 TEST(FeedforwardCall, AnInverseBeyondTheJumpIsLeftOutWithItsReason) {
@@ -220,9 +218,8 @@ TEST(FeedforwardCall, AnExactInverseAGivenCompensatorAndADesignedFeedback) {
     const Json exact = answered(feedforward_call, request, "FeedforwardAnswer");
     EXPECT_GT(exact["feedback"]["Kp"].get<double>(), 0);
     EXPECT_THAT(codes(exact), Contains("feedforward-exact"));
-    const Json given =
-        answered(feedforward_call, with(feedforward(), "/controller", {{"Kf", 2}, {"Tz", 60}, {"Tp", 15}}),
-                 "FeedforwardAnswer");
+    const Json given = answered(
+        feedforward_call, with(feedforward(), "/controller", {{"Kf", 2}, {"Tz", 60}, {"Tp", 15}}), "FeedforwardAnswer");
     ASSERT_EQ(given["variants"].size(), 2u);
     EXPECT_EQ(given["variants"][1]["kind"], "given");
     EXPECT_THAT(codes(given), testing::IsSupersetOf({"feedforward-gains-little", "wrong-model-worse-than-none"}));
@@ -263,8 +260,7 @@ TEST(InteractionCall, AGivenPairingAndPathsThatAreNotThere) {
                {"compare", {"blt"}},
                {"limit", {{"mu", 1.6}}}};
     const Json a = answered(interaction_call, request, "InteractionAnswer");
-    EXPECT_NEAR(a["mu"].get<double>(),
-                std::max(a["Ms_alone"][0].get<double>(), a["Ms_alone"][1].get<double>()), 1e-4);
+    EXPECT_NEAR(a["mu"].get<double>(), std::max(a["Ms_alone"][0].get<double>(), a["Ms_alone"][1].get<double>()), 1e-4);
     EXPECT_EQ(a["rga"], Json::array({Json::array({1, 0}), Json::array({0, 1})}));
     EXPECT_LE(a["mu"].get<double>(), 1.6 * (1 + 1e-5));
     EXPECT_THAT(codes(a), Contains("hardly-interacting"));
@@ -289,8 +285,8 @@ TEST(InteractionCall, ErrorsNameThePlaceAndTheCure) {
     expect_refusal(interaction_call,
                    {{"plant", Json::array({Json::array({"1/(s+1)", "2/(s+1)"}), Json::array({"1/(s+1)", "2/(s+1)"})})}},
                    "/plant", "singular");
-    expect_refusal(interaction_call,
-                   with(with(interaction(), "/plant/0/0", 0), "/pairing", {1, 2}), "/pairing", "does not move it");
+    expect_refusal(interaction_call, with(with(interaction(), "/plant/0/0", 0), "/pairing", {1, 2}), "/pairing",
+                   "does not move it");
 }
 
 TEST(PredictorCall, TheAnswerSaysThatThePidDoesAsWell) {
@@ -321,11 +317,10 @@ TEST(PredictorCall, AWindowAWrongModelAndAGivenController) {
 }
 
 TEST(PredictorCall, OnAnUnstablePlantTheResponsesAreUnknownWithTheReason) {
-    const Json a = answered(predictor_call,
-                            {{"plant", {{"type", "fopdt"}, {"K", -1}, {"T", -4}, {"L", 0.5}}},
-                             {"kind", "filtered_smith"},
-                             {"Ms", 1.9}},
-                            "PredictorAnswer");
+    const Json a = answered(
+        predictor_call,
+        {{"plant", {{"type", "fopdt"}, {"K", -1}, {"T", -4}, {"L", 0.5}}}, {"kind", "filtered_smith"}, {"Ms", 1.9}},
+        "PredictorAnswer");
     EXPECT_TRUE(a["robustness"]["stable"]);
     EXPECT_TRUE(a["load"]["IAE"].is_null());
     EXPECT_THAT(a["load"]["why_null"]["IAE"].get<std::string>(), HasSubstr("unstable model"));
@@ -338,16 +333,17 @@ TEST(PredictorCall, ErrorsNameThePlaceAndTheCure) {
     expect_refusal(predictor_call, {{"plant", "1/(s+1)"}}, "/plant", "no dead time");
     expect_refusal(predictor_call, with(predictor(), "/Ms", 2), "/Ms", "Ms is 2");
     expect_refusal(predictor_call, with(predictor(), "/kind", "smth"), "/kind", "kind is");
-    expect_refusal(predictor_call, with(predictor(), "/dead_time_error", 0), "/dead_time_error", "dead_time_error is 0");
+    expect_refusal(predictor_call, with(predictor(), "/dead_time_error", 0), "/dead_time_error",
+                   "dead_time_error is 0");
     expect_refusal(predictor_call, {{"plant", "e^(-s)/s"}}, "/kind", "filtered_smith");
-    const Json part{{"num", {1}}, {"den", {1}}}, improper{{"num", {1, 1}}, {"den", {1}}}, two{{"num", {2}}, {"den", {1}}};
+    const Json part{{"num", {1}}, {"den", {1}}}, improper{{"num", {1, 1}}, {"den", {1}}},
+        two{{"num", {2}}, {"den", {1}}};
     expect_refusal(predictor_call, with(predictor(), "/controller", {{"C", improper}, {"F", part}}),
                    "/controller/C/num", "cannot be built");
     expect_refusal(predictor_call, with(predictor(), "/controller", {{"C", part}, {"F", two}}), "/controller/F",
                    "F(0) is not 1");
-    expect_refusal(predictor_call,
-                   with(with(predictor(), "/controller", {{"C", part}, {"F", part}}), "/kind", "smith"), "/kind",
-                   "Remove one of them");
+    expect_refusal(predictor_call, with(with(predictor(), "/controller", {{"C", part}, {"F", part}}), "/kind", "smith"),
+                   "/kind", "Remove one of them");
 }
 
 TEST(StructureCalls, AStoppedCallSaysSoAndOneThatIsNotJsonToo) {
@@ -357,9 +353,10 @@ TEST(StructureCalls, AStoppedCallSaysSoAndOneThatIsNotJsonToo) {
     control.stop = stopped.get_token();
     Json designed = interaction();
     designed.erase("controllers");
-    for (const auto& [call, request] :
-         {std::pair<Call, Json>{cascade_call, cascade()}, {feedforward_call, feedforward()}, {interaction_call, designed},
-          {predictor_call, predictor()}}) {
+    for (const auto& [call, request] : {std::pair<Call, Json>{cascade_call, cascade()},
+                                        {feedforward_call, feedforward()},
+                                        {interaction_call, designed},
+                                        {predictor_call, predictor()}}) {
         const Answer answer = call(request.dump(), control);
         EXPECT_GE(answer.status, 400) << answer.body;
         EXPECT_NE(answer.status, 422) << answer.body;

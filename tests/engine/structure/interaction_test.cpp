@@ -130,6 +130,36 @@ TEST(Interaction, OptimaAreAtMostTwoPerMilleAboveThoseOfAnIndependentSearch) {
     }
 }
 
+TEST(Interaction, ARowWhosePlantsIntegrateIsStableAndHasTheIntegralOfItsLoop) {
+    // A level that both inflows move, and a temperature. The IE of y1 after a load at u1 is that of both loops at rest:
+    // u1 takes back the load, so that the integral of e1 is -Ti1/Kp1.
+    const auto slope = [](double K, double L) {
+        return std::optional<LinearPlant>(*LinearPlant::make(Plant(Ipdt{.K = K, .L = L})));
+    };
+    const PlantMatrix plants{{slope(0.2, 1), slope(0.1, 2)}, {first_order(1, 6, 1), first_order(-2, 9, 2)}};
+    const std::vector<IdealPid> controllers{pi(1.2, 15), pi(-0.8, 9)};
+    const auto figures = judge_interaction(plants, controllers);
+    ASSERT_TRUE(figures);
+    EXPECT_TRUE(figures->stable);
+    EXPECT_TRUE(figures->unstable_subsets.empty());
+    EXPECT_GE(figures->IAE_load[0][0], 15 / 1.2 - 1e-6) << "the IAE is at least the magnitude of the integral";
+    EXPECT_LT(figures->mu, 3);
+    const auto design = design_interaction(plants, {.mu = 1.6}, {});
+    ASSERT_TRUE(design) << design.error().message;
+    EXPECT_LE(design->figures.mu, 1.6 * (1 + 1e-5));
+    EXPECT_TRUE(design->figures.unstable_subsets.empty());
+}
+
+TEST(Interaction, LoopsInManualDoNotMakeTheOthersUnstable) {
+    // The second output integrates; alone in automatic the first loop is as stable as without it.
+    const PlantMatrix plants{{first_order(1, 5, 1), first_order(0.3, 5, 1)},
+                             {{}, *LinearPlant::make(Plant(Ipdt{.K = 0.1, .L = 1}))}};
+    const auto figures = judge_interaction(plants, {pi(1, 5), pi(2, 20)});
+    ASSERT_TRUE(figures);
+    EXPECT_TRUE(figures->unstable_subsets.empty());
+    EXPECT_EQ(figures->may_open, (std::vector<bool>{true, true}));
+}
+
 TEST(Interaction, ADiagonalWithoutAPathIsRefused) {
     const PlantMatrix plants{{{}, first_order(2, 5, 1)}, {first_order(2, 5, 1), first_order(1, 5, 1)}};
     const auto figures = judge_interaction(plants, {pi(1, 5), pi(1, 5)});

@@ -94,6 +94,38 @@ TEST(Interaction, TheFiguresOfLuybensSettingsAreThoseOfAnIndependentProgram) {
     EXPECT_GE(figures->mu, *std::ranges::max_element(figures->Ms_others_closed));
 }
 
+TEST(Interaction, TheFiguresOfOgunnaikeAndRaysColumnAreThoseOfAnIndependentProgram) {
+    // Three outputs, with Luyben's printed settings.
+    const PlantMatrix plants{
+        {first_order(0.66, 6.7, 2.6), first_order(-0.61, 8.64, 3.5), first_order(-0.0049, 9.06, 1)},
+        {first_order(1.11, 3.25, 6.5), first_order(-2.36, 5, 3), first_order(-0.01, 7.09, 1.2)},
+        {first_order(-34.68, 8.15, 9.2), first_order(46.2, 10.9, 9.4),
+         transfer({10.1007, 0.87}, {73.132, 22.69, 1}, 1)}};
+    const auto gains = analyse_gains(plants);
+    ASSERT_TRUE(gains);
+    EXPECT_NEAR(gains->relative[0][0], 2.008379032, 1e-8);
+    EXPECT_NEAR(gains->relative[2][1], -0.102577277, 1e-8);
+    const auto figures = judge_interaction(plants, {pi(1.51, 16.4), pi(-0.295, 18), pi(2.63, 6.61)});
+    ASSERT_TRUE(figures && figures->stable);
+    EXPECT_NEAR(figures->mu, 2.288465067, 1e-3);
+    EXPECT_NEAR(figures->log_modulus, 5.930968166, 1e-3);
+    EXPECT_NEAR(figures->Ms_others_closed[0], 1.572985636, 1e-4);
+    EXPECT_NEAR(figures->Ms_alone[2], 1.354710646, 1e-4);
+    EXPECT_TRUE(figures->unstable_subsets.empty());
+}
+
+TEST(Interaction, BoydHastAndAstromsControllersHaveTheirStructuredPeak) {
+    // KP + KI/s + KD s/(1 + 0.3 s) on Wood and Berry's column; figures of an independent program.
+    const auto pid = [](double P, double I, double D) {
+        return *to_ideal(ParallelPid{.Kp = P, .Ki = I, .Kd = D, .filter = {FilterType::derivative, 0.3}});
+    };
+    const auto figures = judge_interaction(wood_berry(), {pid(0.1535, 0.0210, 0.1714), pid(-0.0692, -0.0136, -0.1725)});
+    ASSERT_TRUE(figures && figures->stable);
+    EXPECT_NEAR(figures->mu, 1.399398426, 1e-4);
+    EXPECT_NEAR(figures->log_modulus, 3.657984682, 1e-3);
+    EXPECT_NEAR(figures->Ms_others_closed[1], 1.303214507, 1e-4);
+}
+
 TEST(Interaction, OneWayInteractionLeavesThePeaksOfTheLoopsAlone) {
     const PlantMatrix plants{{first_order(2, 8, 2), {}}, {first_order(5, 3, 1), first_order(1, 12, 4)}};
     const auto figures = judge_interaction(plants, {pi(1.2, 8), pi(1.8, 12)});

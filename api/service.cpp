@@ -17,7 +17,7 @@
 #include "api/json/digest.h"
 #include "api/json/json.h"
 #include "api/outline.h"
-#include "api/range_service.h"
+#include "api/services/range_service.h"
 #include "engine/evaluation/best_so_far.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"

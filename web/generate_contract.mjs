@@ -8,12 +8,15 @@ import { fileURLToPath } from "node:url";
 import openapiTS, { astToString } from "openapi-typescript";
 
 /** Types that the page sends; an answer with one of them contains it as sent. */
-const SENT = ["CheckRequest", "IdentifyRequest", "PlantQuestion", "RangeRequest", "RelayRequest", "TuningRequest"];
+const SENT = [
+  "CascadeRequest", "CheckRequest", "FeedforwardRequest", "IdentifyRequest", "InteractionRequest", "LevelRequest", "PlantQuestion",
+  "PredictorRequest", "RangeRequest", "RelayRequest", "TuningRequest",
+];
 
 /** Types of answers; the types to which both refer are included. */
 const ANSWERED = [
-  "Batch", "BatchCheck", "CheckResult", "ControllerProduct", "ControllerRecordAnswer", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "Health",
-  "IdentifyAnswer", "Job", "JobList", "MethodDescription", "PlantAnswer", "PreviewAnswer", "Problem", "RangeExample", "RangeResult",
+  "Batch", "BatchCheck", "CascadeAnswer", "CheckResult", "ControllerProduct", "ControllerRecordAnswer", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "FeedforwardAnswer", "Frontier", "Health",
+  "IdentifyAnswer", "InteractionAnswer", "Job", "JobList", "LevelAnswer", "MethodDescription", "PlantAnswer", "PredictorAnswer", "PreviewAnswer", "Problem", "RangeExample", "RangeResult",
   "RelayAnswer", "ScheduleSettingsAnswer", "SettingsAnswer", "TuningResult",
 ];
 

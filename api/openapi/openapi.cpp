@@ -18,6 +18,11 @@
 #include "api/contract/request.h"
 #include "api/contract/result/identified_model.h"
 #include "api/contract/result/result.h"
+#include "api/contract/structure/cascade_call.h"
+#include "api/contract/structure/feedforward_call.h"
+#include "api/contract/structure/interaction_call.h"
+#include "api/contract/structure/level_call.h"
+#include "api/contract/structure/predictor_call.h"
 #include "api/describe/answers.h"
 #include "api/embed/files.h"
 #include "api/examples/examples.h"
@@ -97,6 +102,16 @@ std::string openapi_json() {
         range_answer_contract().schema(book);
         range_experiments_contract().schema(book);
         range_experiments_answer_contract().schema(book);
+        cascade_request_contract().schema(book);
+        cascade_answer_contract().schema(book);
+        level_request_contract().schema(book);
+        level_answer_contract().schema(book);
+        feedforward_request_contract().schema(book);
+        feedforward_answer_contract().schema(book);
+        interaction_request_contract().schema(book);
+        interaction_answer_contract().schema(book);
+        predictor_request_contract().schema(book);
+        predictor_answer_contract().schema(book);
         evaluate_request_contract().schema(book);
         evaluate_answer_contract().schema(book);
         identify_request_contract().schema(book);

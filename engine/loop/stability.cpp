@@ -10,6 +10,7 @@
 #include "engine/loop/frequency_grid.h"
 #include "engine/loop/winding.h"
 #include "engine/numerics/fast_complex.h"
+#include "engine/numerics/matrix/dense.h"
 #include "engine/numerics/matrix/eigenvalues.h"
 
 namespace tunewright {
@@ -98,24 +99,6 @@ int turns_outside_unit_circle(const Loop& loop, const LoopGrid& grid) {
     return 0;
 }
 
-/// Chebyshev differentiation matrix on theta_0 = 0 > ... > theta_N = -L (Trefethen 2000, ch. 6).
-std::vector<double> differentiation_matrix(int N, double L) {
-    std::vector<double> x, D(static_cast<std::size_t>((N + 1) * (N + 1)));
-    for (int i = 0; i <= N; ++i) x.push_back(0.5 * L * (std::cos(std::numbers::pi * i / N) - 1));
-    const auto weight = [N](int i) { return (i == 0 || i == N ? 2.0 : 1.0) * (i % 2 == 0 ? 1 : -1); };
-    for (int i = 0; i <= N; ++i) {
-        double diagonal = 0;
-        for (int j = 0; j <= N; ++j) {
-            if (i == j) continue;
-            const double d = weight(i) / weight(j) / (x[static_cast<std::size_t>(i)] - x[static_cast<std::size_t>(j)]);
-            D[static_cast<std::size_t>(i * (N + 1) + j)] = d;
-            diagonal -= d;
-        }
-        D[static_cast<std::size_t>(i * (N + 1) + i)] = diagonal;
-    }
-    return D;
-}
-
 /// States x and the history w_1..w_N of the delayed signal (w_0 = M x + N w_N is not free): x' = F x + G w_N, w_i' =
 /// sum D_ij w_j.
 std::vector<double> discretised(const DelaySystem& s, int nodes) {
@@ -123,8 +106,7 @@ std::vector<double> discretised(const DelaySystem& s, int nodes) {
     std::vector<double> A(static_cast<std::size_t>(size * size), 0.0);
     using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     using Vector = Eigen::VectorXd;
-    const std::vector<double> differentiation = differentiation_matrix(nodes, s.L);
-    const Eigen::Map<const Matrix> D(differentiation.data(), nodes + 1, nodes + 1);
+    const Eigen::MatrixXd D = chebyshev_differentiation(nodes, s.L);
     const auto d0 = D.col(0).tail(nodes);
     Eigen::Map<Matrix> whole(A.data(), size, size);
     whole.topLeftCorner(s.n, s.n) = Eigen::Map<const Matrix>(s.F.data(), s.n, s.n);

@@ -8,9 +8,10 @@
 #include <fmt/format.h>
 
 #include "api/check_service.h"
-#include "api/range_service.h"
 #include "api/registries.h"
 #include "api/service.h"
+#include "api/services/range_service.h"
+#include "api/services/structure_service.h"
 #include "server/clock.h"
 #include "server/http/app/negotiation.h"
 #include "server/http/app/problems.h"
@@ -30,6 +31,7 @@ using Refusal = std::optional<Response> (*)(const http::Request&);
 constexpr std::chrono::seconds kEvaluateTime{10};
 constexpr std::chrono::seconds kDesignTime{10};
 constexpr std::chrono::seconds kRangeTime{20};
+constexpr std::chrono::seconds kStructureTime{20};
 constexpr std::chrono::seconds kIdentifyTime{30};
 constexpr std::chrono::seconds kCheckTime{30};
 constexpr std::chrono::seconds kRelayTime{10};
@@ -183,6 +185,11 @@ void add_synchronous_routes(http::Router& router, ComputeSlots& turns, Timer& ti
     add("/v1/design", of_body(api::design_call), kDesignTime);
     add("/v1/frontier", of_body(api::frontier_call), kDesignTime);
     add("/v1/range", of_body(api::range_call), kRangeTime);
+    add("/v1/cascade", of_body(api::cascade_call), kStructureTime);
+    add("/v1/level", of_body(api::level_call), kStructureTime);
+    add("/v1/feedforward", of_body(api::feedforward_call), kStructureTime);
+    add("/v1/interaction", of_body(api::interaction_call), kStructureTime);
+    add("/v1/predictor", of_body(api::predictor_call), kStructureTime);
     add("/v1/check", of_body(api::check_call), kCheckTime);
     add("/v1/identify", of_body(api::identify_call), kIdentifyTime);
     add("/v1/records/controller", of_body(api::controller_record_call), kIdentifyTime);

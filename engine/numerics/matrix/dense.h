@@ -50,4 +50,8 @@ struct PrincipalAxes {
 /// solver: in dense.cpp the compile would need more than 0.7 GB.
 PrincipalAxes principal_axes(const Eigen::MatrixXd& A);
 
+/// The matrix that takes a function's values at the Chebyshev nodes theta_i = L (cos(pi i/N) - 1)/2, from 0 down to -L,
+/// to its derivative there; (N + 1) x (N + 1) (Trefethen 2000, Spectral Methods in MATLAB, chapter 6).
+Eigen::MatrixXd chebyshev_differentiation(int N, double L);
+
 }  // namespace tunewright

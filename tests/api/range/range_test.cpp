@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "api/contract/range/range_experiments.h"
-#include "api/range_service.h"
 #include "api/report/report.h"
+#include "api/services/range_service.h"
 #include "engine/tuning/limits.h"
 #include "tests/api/support.h"
 

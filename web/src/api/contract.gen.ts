@@ -1552,6 +1552,327 @@ export type components = {
       settled: boolean;
       ended?: string;
     };
+    CascadeRequest: {
+      name?: string;
+      units?: components["schemas"]["Units"];
+      inner: components["schemas"]["CascadeLoop"];
+      outer: components["schemas"]["CascadeLoop"];
+      arrangement?: "series" | "parallel";
+      limits?: components["schemas"]["CascadeLimits"];
+      search?: "sequential" | "joint";
+      weights?: components["schemas"]["CascadeWeights"];
+      baseline?: components["schemas"]["CascadePair"];
+      compare_single?: boolean;
+    };
+    CascadeLoop: {
+      plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      tune?: components["schemas"]["LoopDesign"];
+      controller?: components["schemas"]["Controller"];
+    };
+    LoopDesign: {
+      method?: "robust";
+      controller?: "PI" | "PID";
+      Ms?: number;
+      Mt?: number;
+    };
+    CascadeLimits: {
+      Ms_valve?: number;
+    };
+    CascadeWeights: {
+      d1?: number;
+      d2?: number;
+    };
+    CascadePair: {
+      inner: components["schemas"]["Controller"];
+      outer: components["schemas"]["Controller"];
+    };
+    CascadeAnswer: {
+      inner: {
+        controller: components["schemas"]["Controller"];
+        robustness: {
+          Ms: number | null;
+          Mt: number | null;
+          why_null?: {
+            [key: string]: string;
+          };
+        };
+      };
+      outer: {
+        controller: components["schemas"]["Controller"];
+        robustness: {
+          Ms: number | null;
+          Mt: number | null;
+          Ms_valve: number | null;
+          gain_margin: number | null;
+          phase_margin_deg: number | null;
+          dead_time_up: number | null;
+          why_null?: {
+            [key: string]: string;
+          };
+        };
+      };
+      Ms_valve_limit: number;
+      performance: {
+        inner_load: components["schemas"]["StructureStep"];
+        outer_load: components["schemas"]["StructureStep"];
+        setpoint: components["schemas"]["StructureStep"];
+      };
+      speed_ratio: number | null;
+      single: components["schemas"]["SingleLoop"] | null;
+      gain: {
+        inner_load: number | null;
+        outer_load: number | null;
+        why_null?: {
+          [key: string]: string;
+        };
+      };
+      baseline?: components["schemas"]["CascadeBaseline"];
+      verdict: components["schemas"]["Conclusion"][];
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    StructureStep: {
+      IAE: number | null;
+      IE: number | null;
+      peak: number | null;
+      TV: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    SingleLoop: {
+      controller: components["schemas"]["Controller"];
+      Ms: number | null;
+      Mt: number | null;
+      performance: {
+        inner_load: components["schemas"]["StructureStep"];
+        outer_load: components["schemas"]["StructureStep"];
+        setpoint: components["schemas"]["StructureStep"];
+      };
+    };
+    CascadeBaseline: {
+      stable: boolean;
+      robustness: {
+        Ms_inner: number | null;
+        Ms_outer: number | null;
+        Ms_valve: number | null;
+        why_null?: {
+          [key: string]: string;
+        };
+      };
+      performance: {
+        inner_load: components["schemas"]["StructureStep"];
+        outer_load: components["schemas"]["StructureStep"];
+        setpoint: components["schemas"]["StructureStep"];
+      };
+    };
+    Conclusion: {
+      code: "unstable" | "cascade-pays" | "cascade-gains-little" | "inner-too-slow" | "inner-peak-above" | "outer-peak-above" | "valve-peak-above" | "near-lowest-rate" | "level-above-room" | "flow-loop-unstable" | "flow-loop-too-slow" | "feedforward-exact" | "feedforward-pays" | "feedforward-gains-little" | "gain-alone-worse-than-none" | "peak-unavoidable" | "wrong-model-worse-than-none" | "pid-does-as-well" | "predictor-pays" | "limited-by-dead-time-error" | "narrow-dead-time-window" | "controller-unstable" | "pairing-impossible" | "other-pairing-better" | "hardly-interacting" | "mu-above" | "subsets-unstable" | "better-than-blt";
+      figures: {
+        [key: string]: number | null;
+      };
+    };
+    LevelRequest: {
+      name?: string;
+      units?: components["schemas"]["Units"];
+      volume: number;
+      largest_step: number;
+      allowed: number;
+      aim?: "rate" | "no_outflow_overshoot" | "zeta";
+      zeta?: number;
+      gap?: number;
+      flow_loop?: components["schemas"]["FlowLoop"];
+      controller?: components["schemas"]["LevelSettings"];
+    };
+    FlowLoop: {
+      T?: number;
+      L?: number;
+    };
+    LevelSettings: {
+      Kc: number;
+      Ti?: number;
+    };
+    LevelAnswer: {
+      design: components["schemas"]["LevelDesign"];
+      bound: number;
+      robustness: {
+        Ms: number | null;
+        why_null?: {
+          [key: string]: string;
+        };
+      };
+      frontier: components["schemas"]["LevelDesign"][];
+      verdict: components["schemas"]["Conclusion"][];
+    };
+    LevelDesign: {
+      Kc: number | null;
+      Ti: number | null;
+      zeta: number | null;
+      highest: number | null;
+      time_of_highest: number | null;
+      largest_rate: number | null;
+      rate_over_bound: number | null;
+      overshoot_percent: number | null;
+    };
+    FeedforwardRequest: {
+      name?: string;
+      units?: components["schemas"]["Units"];
+      plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      disturbance: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      feedback: components["schemas"]["Controller"] | {
+        tune: components["schemas"]["LoopDesign"];
+      };
+      feedforward?: components["schemas"]["FeedforwardWish"];
+      controller?: components["schemas"]["Feedforward"];
+      uncertainty?: number;
+    };
+    FeedforwardWish: {
+      jump?: number;
+    };
+    Feedforward: {
+      Kf: number;
+      Tz: number;
+      Tp: number;
+      Lf: number;
+    };
+    FeedforwardAnswer: {
+      feedback: components["schemas"]["Controller"];
+      variants: components["schemas"]["FeedforwardVariant"][];
+      late: number;
+      peak_bound: number;
+      verdict: components["schemas"]["Conclusion"][];
+    };
+    FeedforwardVariant: {
+      kind: "none" | "static" | "inverse" | "guzman_hagglund" | "optimum" | "given";
+      compensator: components["schemas"]["Feedforward"] | null;
+      IAE: number | null;
+      IE: number | null;
+      peak: number | null;
+      TV: number | null;
+      u_start: number;
+      IAE_if_wrong?: {
+        disturbance_gain_low: number | null;
+        disturbance_gain_high: number | null;
+        plant_dead_time_short: number | null;
+        plant_dead_time_long: number | null;
+        why_null?: {
+          [key: string]: string;
+        };
+      };
+      why_not?: string;
+    };
+    InteractionRequest: {
+      name?: string;
+      units?: components["schemas"]["Units"];
+      plant: (components["schemas"]["Plant"] | components["schemas"]["TypedPlant"] | null | 0)[][];
+      pairing?: number[] | null;
+      controllers?: ("PI" | "PID") | components["schemas"]["Controller"][];
+      limit?: components["schemas"]["InteractionLimit"];
+      weights?: components["schemas"]["InteractionWeights"];
+      baseline?: components["schemas"]["Controller"][];
+      compare?: ("blt" | "detuned")[];
+    };
+    InteractionLimit: {
+      mu?: number;
+    };
+    InteractionWeights: {
+      y?: number[];
+    };
+    InteractionAnswer: {
+      rga: (number | null)[][];
+      condition: number;
+      pairings: components["schemas"]["Pairing"][];
+      pairing: number[];
+      controllers: components["schemas"]["Controller"][];
+      stable: boolean;
+      Ms_alone: (number | null)[];
+      Ms_others_closed: (number | null)[];
+      mu: number | null;
+      omega_mu: number | null;
+      Lcm_dB: number | null;
+      IAE_load: (number | null)[][];
+      IAE_setpoint: (number | null)[][];
+      cost: number | null;
+      manual: {
+        may_open: boolean[];
+        unstable_in_automatic: number[][];
+      };
+      F_blt: number | null;
+      compared: components["schemas"]["ComparedControllers"][];
+      verdict: components["schemas"]["Conclusion"][];
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    Pairing: {
+      inputs: number[];
+      niederlinski: number | null;
+      relative_gains: (number | null)[];
+      relative_gains_at_crossover: (number | null)[];
+      possible: boolean;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    ComparedControllers: {
+      name: string;
+      controllers: components["schemas"]["Controller"][];
+      stable: boolean;
+      Ms_alone: (number | null)[];
+      Ms_others_closed: (number | null)[];
+      mu: number | null;
+      omega_mu: number | null;
+      Lcm_dB: number | null;
+      IAE_load: (number | null)[][];
+      IAE_setpoint: (number | null)[][];
+      cost: number | null;
+      why_not?: string;
+    };
+    PredictorRequest: {
+      name?: string;
+      units?: components["schemas"]["Units"];
+      plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      model?: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      kind?: "smith" | "filtered_smith" | "predictive_pi";
+      Ms?: number;
+      dead_time_error?: number;
+      controller?: components["schemas"]["PredictorController"];
+    };
+    PredictorController: {
+      C: components["schemas"]["Rational"];
+      F: components["schemas"]["Rational"];
+    };
+    Rational: {
+      num: number[];
+      den: number[];
+    };
+    PredictorAnswer: {
+      controller: components["schemas"]["PredictorController"];
+      lambda?: number;
+      Tf?: number;
+      beta?: number;
+      robustness: components["schemas"]["PredictorRobustness"];
+      load: components["schemas"]["StructureStep"];
+      setpoint: components["schemas"]["StructureStep"];
+      pid: components["schemas"]["Controller"] | null;
+      pid_IAE: number | null;
+      verdict: components["schemas"]["Conclusion"][];
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    PredictorRobustness: {
+      stable: boolean;
+      controller_stable: boolean;
+      Ms: number | null;
+      Mt: number | null;
+      dead_time_up: number | null;
+      dead_time_down: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
     EvaluateAnswer: {
       operating_point?: components["schemas"]["OperatingPoint"];
       linear_model?: components["schemas"]["Plant"];
@@ -1954,6 +2275,38 @@ export type WorstPlace = components['schemas']['WorstPlace'];
 export type RangePassage = components['schemas']['RangePassage'];
 export type RangeRun = components['schemas']['RangeRun'];
 export type RangeNonlinearRun = components['schemas']['RangeNonlinearRun'];
+export type CascadeRequest = components['schemas']['CascadeRequest'];
+export type CascadeLoop = components['schemas']['CascadeLoop'];
+export type LoopDesign = components['schemas']['LoopDesign'];
+export type CascadeLimits = components['schemas']['CascadeLimits'];
+export type CascadeWeights = components['schemas']['CascadeWeights'];
+export type CascadePair = components['schemas']['CascadePair'];
+export type CascadeAnswer = components['schemas']['CascadeAnswer'];
+export type StructureStep = components['schemas']['StructureStep'];
+export type SingleLoop = components['schemas']['SingleLoop'];
+export type CascadeBaseline = components['schemas']['CascadeBaseline'];
+export type Conclusion = components['schemas']['Conclusion'];
+export type LevelRequest = components['schemas']['LevelRequest'];
+export type FlowLoop = components['schemas']['FlowLoop'];
+export type LevelSettings = components['schemas']['LevelSettings'];
+export type LevelAnswer = components['schemas']['LevelAnswer'];
+export type LevelDesign = components['schemas']['LevelDesign'];
+export type FeedforwardRequest = components['schemas']['FeedforwardRequest'];
+export type FeedforwardWish = components['schemas']['FeedforwardWish'];
+export type Feedforward = components['schemas']['Feedforward'];
+export type FeedforwardAnswer = components['schemas']['FeedforwardAnswer'];
+export type FeedforwardVariant = components['schemas']['FeedforwardVariant'];
+export type InteractionRequest = components['schemas']['InteractionRequest'];
+export type InteractionLimit = components['schemas']['InteractionLimit'];
+export type InteractionWeights = components['schemas']['InteractionWeights'];
+export type InteractionAnswer = components['schemas']['InteractionAnswer'];
+export type Pairing = components['schemas']['Pairing'];
+export type ComparedControllers = components['schemas']['ComparedControllers'];
+export type PredictorRequest = components['schemas']['PredictorRequest'];
+export type PredictorController = components['schemas']['PredictorController'];
+export type Rational = components['schemas']['Rational'];
+export type PredictorAnswer = components['schemas']['PredictorAnswer'];
+export type PredictorRobustness = components['schemas']['PredictorRobustness'];
 export type EvaluateAnswer = components['schemas']['EvaluateAnswer'];
 export type IdentifyRequest = components['schemas']['IdentifyRequest'];
 export type IdentifyAnswer = components['schemas']['IdentifyAnswer'];

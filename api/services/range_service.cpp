@@ -1,4 +1,4 @@
-#include "api/range_service.h"
+#include "api/services/range_service.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,0 +1,181 @@
+#include "api/contract/structure/feedforward_call.h"
+
+#include <cmath>
+
+namespace tunewright::api {
+namespace {
+
+using structure::Feedforward;
+using structure::FeedforwardVariant;
+
+const Description<Feedforward>& compensator_contract() {
+    static const auto description = [] {
+        using F = Feedforward;
+        const NumberRule time{.minimum = 0};
+        Description<F> d("Feedforward", "F = Kf (Tz s + 1)/(Tp s + 1) e^(-Lf s), subtracted from u.");
+        d.field("Kf", &F::Kf, number(), "Gain: u per unit of the disturbance.", {.required = true})
+            .field("Tz", &F::Tz, number(time), "Lead.", {.unit = "time"})
+            .field("Tp", &F::Tp, number(time), "Lag.", {.unit = "time"})
+            .field("Lf", &F::Lf, number(time), "Delay.", {.unit = "time"})
+            .check([](const Json&, F& f, Reader& reader) {
+                if (f.Tz > 0 && f.Tp == 0)
+                    reader.fault_at("Tp", "Tp is 0 with a lead Tz of " + shown(f.Tz) +
+                                              "; such a compensator cannot be built. Give a lag, such as Tz/10.");
+            });
+        return d;
+    }();
+    return description;
+}
+
+const auto& feedforward_wish_contract() {
+    using W = decltype(FeedforwardRequest::feedforward);
+    static const auto description = [] {
+        Description<W> d("FeedforwardWish", "Limits of the compensator.");
+        d.field("jump", &W::jump, number({.exclusive_minimum = 0}),
+                "The largest first move of u after a unit step of the disturbance.");
+        return d;
+    }();
+    return description;
+}
+
+/// A controller's members, or {"tune": {...}}.
+Codec<FeedbackWish> feedback_codec() {
+    const auto given = linear_controller();
+    Codec<FeedbackWish> codec;
+    codec.read = [given](const Json& value, FeedbackWish& target, Reader& reader) {
+        if (!value.is_object() || !value.contains("tune")) return given.read(value, target.controller, reader);
+        if (value.size() > 1)
+            return reader.fault_at("tune", "tune stands alone in feedback. Remove the other members, or remove tune.");
+        const Reader::At at(reader, "tune");
+        loop_design_contract().read(value["tune"], target.tune.emplace(), reader);
+    };
+    codec.schema = [given](SchemaBook& book) {
+        return Json{{"oneOf", Json::array({given.schema(book),
+                                           Json{{"type", "object"},
+                                                {"properties", {{"tune", loop_design_contract().schema(book)}}},
+                                                {"required", {"tune"}},
+                                                {"additionalProperties", false}}})}};
+    };
+    codec.skip = [](const FeedbackWish&) { return true; };
+    return codec;
+}
+
+struct WrongCase {
+    const char* name;
+    std::size_t at;
+};
+constexpr WrongCase kWrongCases[] = {{"disturbance_gain_low", 0},
+                                     {"disturbance_gain_high", 1},
+                                     {"plant_dead_time_short", 2},
+                                     {"plant_dead_time_long", 3}};
+
+void write_wrong(const FeedforwardVariant& v, Writer& out) {
+    out.begin_object();
+    bool unknown = false;
+    for (const WrongCase& one : kWrongCases) {
+        const double IAE = v.IAE_if_wrong[one.at];
+        out.key(one.name);
+        std::isfinite(IAE) ? out.number(IAE) : out.null();
+        unknown = unknown || !std::isfinite(IAE);
+    }
+    if (unknown) {
+        out.key("why_null").begin_object();
+        for (const WrongCase& one : kWrongCases)
+            if (!std::isfinite(v.IAE_if_wrong[one.at])) out.key(one.name).text("The loop is not stable then.");
+        out.end_object();
+    }
+    out.end_object();
+}
+
+const Description<FeedforwardVariant>& variant_contract() {
+    static const auto description = [] {
+        using V = FeedforwardVariant;
+        using enum structure::FeedforwardKind;
+        const auto figure_of = [](double structure::StepFigures::*member) {
+            return
+                [member](const V& v, Writer& out) { v.why_not.empty() ? out.number(v.figures.*member) : out.null(); };
+        };
+        Description<V> d("FeedforwardVariant", "A compensator and its figures after a unit step of the disturbance.");
+        d.field("kind", &V::kind,
+                only_answered(choice<structure::FeedforwardKind>({{"none", none},
+                                                                  {"static", gain},
+                                                                  {"inverse", inverse},
+                                                                  {"guzman_hagglund", rule},
+                                                                  {"optimum", optimum},
+                                                                  {"given", given}})),
+                "none: feedback alone; static: the gain alone; inverse: lead, lag and delay of both plants; "
+                "guzman_hagglund: the rule of 2011; optimum: the least IAE.")
+            .field(
+                "compensator", {},
+                [](const V& v, Writer& out) {
+                    v.compensator ? compensator_contract().write(*v.compensator, out) : out.null();
+                },
+                or_null(object(compensator_contract()).schema), "Null without one, and if it cannot be built.")
+            .field("IAE", {}, figure_of(&structure::StepFigures::IAE), or_null(number().schema),
+                   "Integral of the error's magnitude.")
+            .field("IE", {}, figure_of(&structure::StepFigures::IE), or_null(number().schema), "Integral of the error.")
+            .field("peak", {}, figure_of(&structure::StepFigures::peak), or_null(number().schema), "y farthest from 0.")
+            .field("TV", {}, figure_of(&structure::StepFigures::TV), or_null(number().schema), "Total variation of u.")
+            .field("u_start", &V::u_start, only_answered(number()), "First move of u.")
+            .field(
+                "IAE_if_wrong", {}, write_wrong,
+                [](SchemaBook&) {
+                    return figures_schema({"disturbance_gain_low", "disturbance_gain_high", "plant_dead_time_short",
+                                           "plant_dead_time_long"});
+                },
+                "IAE if the disturbance's gain or the plant's dead time differs by `uncertainty`.", {},
+                [](const V& v) { return v.IAE_if_wrong.empty(); })
+            .field("why_not", &V::why_not, unless<std::string>(words(), [](const auto& text) { return text.empty(); }),
+                   "Why it cannot be built.");
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace
+
+const Description<FeedforwardRequest>& feedforward_request_contract() {
+    static const auto description = [] {
+        using R = FeedforwardRequest;
+        Description<R> d("FeedforwardRequest", "A loop with feedback, and a disturbance that is measured.");
+        add_labels(d);
+        d.field("plant", &R::plant, linear_plant(), "From u to y.", {.required = true})
+            .field("disturbance", &R::disturbance, linear_plant(), "From the measured disturbance to y.",
+                   {.required = true})
+            .field("feedback", &R::feedback, feedback_codec(), "The loop's controller, or {\"tune\": {...}}.",
+                   {.required = true})
+            .field("feedforward", &R::feedforward, object(feedforward_wish_contract()), "Limits of the compensator.")
+            .field("controller", &R::controller, maybe(object(compensator_contract())),
+                   "A compensator to judge, in place of designs.")
+            .field("uncertainty", &R::uncertainty, number({.exclusive_minimum = 0, .exclusive_maximum = 1}),
+                   "Share by which the disturbance's gain and the plant's dead time are taken to be wrong.")
+            .example({{"plant", "1.5 e^(-15s)/(60s+1)"},
+                      {"disturbance", "1/(15s+1)"},
+                      {"feedback", {{"Kp", 1.3333}, {"Ti", 60}}},
+                      {"feedforward", {{"jump", 12}}}});
+        return d;
+    }();
+    return description;
+}
+
+const Description<FeedforwardAnswer>& feedforward_answer_contract() {
+    static const auto description = [] {
+        using A = FeedforwardAnswer;
+        Description<A> d("FeedforwardAnswer", "Compensators and their figures with the feedback in place.");
+        d.field("feedback", &A::feedback, ideal_controller(), "The loop's controller.")
+            .field(
+                "variants", {},
+                [](const A& a, Writer& out) { list_of(answer(variant_contract())).write(a.result.variants, out); },
+                list_of(answer(variant_contract())).schema, "Without feedforward, then the compensators.")
+            .field("late", {}, [](const A& a, Writer& out) { out.number(a.result.late); }, number().schema,
+                   "Dead time of the plant less that of the disturbance: above 0 no compensator is exact.",
+                   {.unit = "time"})
+            .field("peak_bound", {}, [](const A& a, Writer& out) { out.number(a.result.peak_bound); }, number().schema,
+                   "Magnitude of the error that no feedforward avoids.", {.unit = "y"})
+            .field("verdict", &A::verdict, list_of(answer(conclusion_contract())), "Conclusions.");
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,32 @@
+// Feedforward from a measured disturbance: POST /v1/feedforward.
+#pragma once
+
+#include "api/contract/structure/structure_parts.h"
+
+namespace tunewright::api {
+
+/// The controller of the loop: given, or designed on the plant.
+struct FeedbackWish {
+    std::optional<IdealPid> controller;
+    std::optional<structure::LoopDesign> tune;
+};
+
+struct FeedforwardRequest : LabelledRequest {
+    std::optional<LinearPlant> plant, disturbance;
+    FeedbackWish feedback;
+    struct {
+        double jump = 10;
+    } feedforward;
+    std::optional<structure::Feedforward> controller;
+    double uncertainty = 0.2;
+};
+const Description<FeedforwardRequest>& feedforward_request_contract();
+
+struct FeedforwardAnswer {
+    IdealPid feedback;
+    structure::FeedforwardResult result;
+    structure::Conclusions verdict;
+};
+const Description<FeedforwardAnswer>& feedforward_answer_contract();
+
+}  // namespace tunewright::api

@@ -1,0 +1,52 @@
+// Loops that interact: POST /v1/interaction.
+#pragma once
+
+#include "api/contract/structure/structure_parts.h"
+
+namespace tunewright::api {
+
+/// What is designed, or the controllers that are judged, in the order of the outputs.
+struct InteractionControllers {
+    ControllerKind kind = ControllerKind::PI;
+    std::vector<std::optional<IdealPid>> given;
+};
+
+struct InteractionRequest : LabelledRequest {
+    structure::PlantMatrix plant;
+    std::optional<std::vector<int>> pairing;  ///< of each output the input, from 1
+    InteractionControllers controllers;
+    struct {
+        double mu = 1.8;
+    } limit;
+    struct {
+        std::vector<double> y;
+    } weights;
+    std::optional<InteractionControllers> baseline;
+    std::vector<std::string> compare;
+
+    double weight(std::size_t output) const { return weights.y.empty() ? 1 : weights.y[output]; }
+};
+const Description<InteractionRequest>& interaction_request_contract();
+
+/// Controllers for comparison, with their figures.
+struct ComparedControllers {
+    std::string name;
+    std::vector<IdealPid> controllers;
+    structure::InteractionFigures figures;
+    double cost = 0;  ///< weighted sum of the IAE after loads
+    std::string why;  ///< there are none, for this reason
+};
+
+struct InteractionAnswer {
+    structure::GainAnalysis gains;
+    std::size_t chosen = 0;  ///< of gains.pairings
+    std::vector<IdealPid> controllers;
+    structure::InteractionFigures figures;
+    double cost = 0;
+    Figure F;  ///< of the BLT settings
+    std::vector<ComparedControllers> compared;
+    structure::Conclusions verdict;
+};
+const Description<InteractionAnswer>& interaction_answer_contract();
+
+}  // namespace tunewright::api

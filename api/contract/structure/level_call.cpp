@@ -1,0 +1,150 @@
+#include "api/contract/structure/level_call.h"
+
+#include <cmath>
+
+namespace tunewright::api {
+namespace {
+
+using structure::LevelDesign;
+using structure::LevelProblem;
+
+const NumberRule kAboveZero{.exclusive_minimum = 0};
+
+const Description<structure::FlowLoop>& flow_loop_contract() {
+    static const auto description = [] {
+        using F = structure::FlowLoop;
+        Description<F> d("FlowLoop", "The closed loop of the outflow.");
+        d.field("T", &F::T, number({.minimum = 0}), "Its lag.", {.unit = "time"})
+            .field("L", &F::L, number({.minimum = 0}), "Its dead time.", {.unit = "time"});
+        return d;
+    }();
+    return description;
+}
+
+const Description<structure::LevelSettings>& level_settings_contract() {
+    static const auto description = [] {
+        using S = structure::LevelSettings;
+        Description<S> d("LevelSettings", "A level controller.");
+        d.field("Kc", &S::Kc, number(kAboveZero), "Gain: flow per level.", {.required = true, .unit = "u/y"})
+            .field("Ti", &S::Ti, maybe(number(kAboveZero)), "Integral time; left out: proportional action alone.",
+                   {.unit = "time"});
+        return d;
+    }();
+    return description;
+}
+
+/// A member of the problem.
+template <class M>
+Callable<void(const Json&, LevelRequest&, Reader&)> into(M LevelProblem::*member, const Codec<M>& codec) {
+    return [member, read = codec.read](const Json& value, LevelRequest& request, Reader& reader) {
+        read(value, request.problem.*member, reader);
+    };
+}
+
+void check_level(const Json& value, LevelRequest& request, Reader& reader) {
+    const LevelProblem& p = request.problem;
+    if (value.contains("zeta") && p.aim != structure::LevelAim::zeta)
+        reader.fault_at("zeta", "zeta belongs to the aim zeta. Set aim to zeta, or remove it.");
+    if (p.aim == structure::LevelAim::zeta && !value.contains("zeta") && !p.given)
+        reader.fault_at("zeta", "zeta is missing; the aim zeta needs the damping, such as 0.7.");
+    if (value.contains("aim") && p.given)
+        reader.fault_at("aim", "aim belongs to a design, and controller is given. Remove one of them.");
+}
+
+/// A number of every design; time and Ti are infinite without integral action.
+Description<LevelDesign>& add_design(Description<LevelDesign>& d) {
+    const auto of = [](double LevelDesign::*member, const char* why) {
+        return [member, why](const LevelDesign& design) { return finite_or(design.*member, why); };
+    };
+    const auto field = [&](const char* name, auto value, const char* sentence, const FieldOptions& options) {
+        d.field(
+            name, {}, [value](const LevelDesign& design, Writer& out) { figure().write(value(design), out); },
+            figure().schema, sentence, options);
+    };
+    field("Kc", of(&LevelDesign::Kc, ""), "Gain: flow per level.", {.unit = "u/y"});
+    field("Ti", of(&LevelDesign::Ti, ""), "Integral time; null: proportional action alone.", {.unit = "time"});
+    field("zeta", of(&LevelDesign::zeta, ""), "Damping; 0 without integral action.", {});
+    field("highest", of(&LevelDesign::highest, ""), "The highest level after the largest step.", {.unit = "y"});
+    field("time_of_highest", of(&LevelDesign::time_of_highest, ""),
+          "Its time; null: the level approaches it without end.", {.unit = "time"});
+    field("largest_rate", of(&LevelDesign::largest_rate, ""), "The largest rate of the outflow.", {.unit = "u/time"});
+    field("rate_over_bound", of(&LevelDesign::rate_over_bound, ""), "It over the bound for any controller.", {});
+    field("overshoot_percent", of(&LevelDesign::overshoot_percent, ""),
+          "Overshoot of the outflow in percent of the step.", {.unit = "%"});
+    return d;
+}
+
+const Description<LevelDesign>& level_design_contract() {
+    static const auto description = [] {
+        Description<LevelDesign> d("LevelDesign", "A level controller and what it does after the largest step.");
+        add_design(d);
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace
+
+const Description<LevelRequest>& level_request_contract() {
+    static const auto description = [] {
+        using R = LevelRequest;
+        using enum structure::LevelAim;
+        const Codec<double> positive = number(kAboveZero);
+        const auto flow = maybe(object(flow_loop_contract()));
+        const auto given = maybe(object(level_settings_contract()));
+        const auto aim = choice<structure::LevelAim>(
+            {{"rate", rate}, {"no_outflow_overshoot", no_overshoot}, {"zeta", structure::LevelAim::zeta}});
+        Description<R> d("LevelRequest",
+                         "A level that smooths flows: a vessel, its largest step, the room of the level.");
+        add_labels(d);
+        d.field("volume", into(&LevelProblem::area, positive), {}, positive.schema,
+                "Volume per unit of level, in the units of flow, time and level.",
+                {.required = true, .unit = "u time/y"})
+            .field("largest_step", into(&LevelProblem::step, positive), {}, positive.schema,
+                   "The largest step of the inflow.", {.required = true, .unit = "u"})
+            .field("allowed", into(&LevelProblem::allowed, positive), {}, positive.schema,
+                   "The largest deviation of the level that is allowed.", {.required = true, .unit = "y"})
+            .field("aim", into(&LevelProblem::aim, aim), {}, aim.schema,
+                   "rate (default): the lowest rate of the outflow, zeta = 0.4; no_outflow_overshoot: proportional "
+                   "action alone; zeta: a given damping.")
+            .field("zeta", into(&LevelProblem::zeta, positive), {}, positive.schema, "The damping of the aim zeta.")
+            .field("gap", into(&LevelProblem::gap, number({.minimum = 0})), {}, number({.minimum = 0}).schema,
+                   "Deviation within which proportional action alone rests; default 0.", {.unit = "y"})
+            .field("flow_loop", into(&LevelProblem::flow, flow), {}, flow.schema, "The closed loop of the outflow.")
+            .field("controller", into(&LevelProblem::given, given), {}, given.schema,
+                   "A controller to judge, in place of a design.")
+            .check(check_level)
+            .example({{"volume", 12}, {"largest_step", 4}, {"allowed", 1.8}});
+        return d;
+    }();
+    return description;
+}
+
+const Description<LevelAnswer>& level_answer_contract() {
+    static const auto description = [] {
+        using A = LevelAnswer;
+        Description<A> d("LevelAnswer", "A level controller, its figures, and other dampings.");
+        d.field(
+             "design", {}, [](const A& a, Writer& out) { level_design_contract().write(a.result.design, out); },
+             [](SchemaBook& book) { return level_design_contract().schema(book); }, "The controller.")
+            .field("bound", {}, [](const A& a, Writer& out) { out.number(a.result.bound); }, number().schema,
+                   "The rate of the outflow that no controller undercuts which keeps the level in its room.",
+                   {.unit = "u/time"})
+            .field(
+                "robustness", {},
+                [](const A& a, Writer& out) {
+                    write_figures(out, {{"Ms", a.result.Ms}});
+                },
+                [](SchemaBook&) { return figures_schema({"Ms"}); }, "With the flow loop.")
+            .field(
+                "frontier", {},
+                [](const A& a, Writer& out) { list_of(answer(level_design_contract())).write(a.result.frontier, out); },
+                list_of(answer(level_design_contract())).schema,
+                "Designs over the damping, then proportional action alone; each uses the whole room.")
+            .field("verdict", &A::verdict, list_of(answer(conclusion_contract())), "Conclusions.");
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,19 @@
+// Levels that smooth flows: POST /v1/level.
+#pragma once
+
+#include "api/contract/structure/structure_parts.h"
+
+namespace tunewright::api {
+
+struct LevelRequest : LabelledRequest {
+    structure::LevelProblem problem;
+};
+const Description<LevelRequest>& level_request_contract();
+
+struct LevelAnswer {
+    structure::LevelResult result;
+    structure::Conclusions verdict;
+};
+const Description<LevelAnswer>& level_answer_contract();
+
+}  // namespace tunewright::api

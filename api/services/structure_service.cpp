@@ -1,0 +1,237 @@
+#include "api/services/structure_service.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "api/contract/structure/cascade_call.h"
+#include "api/contract/structure/feedforward_call.h"
+#include "api/contract/structure/interaction_call.h"
+#include "api/contract/structure/level_call.h"
+#include "api/contract/structure/predictor_call.h"
+#include "api/describe/body.h"
+
+namespace tunewright::api {
+namespace {
+
+using structure::CascadeControllers;
+using structure::CascadeResult;
+
+/// A search that was stopped has no answer: its partial result is not kept.
+Error stopped() { return {ErrorKind::timeout, "", "The design was stopped."}; }
+
+Expected<CascadeResult> given_cascade(const CascadeRequest& request, const CascadeControllers& controllers) {
+    auto figures = judge_cascade(request.plants(), controllers);
+    if (!figures) return figures.error();
+    return CascadeResult{controllers, std::move(*figures), false};
+}
+
+/// Designed, or with an outer controller that is given: then only the inner one is designed, if it is not given too.
+Expected<CascadeResult> cascade_of(const CascadeRequest& request, const RunControl& control) {
+    if (!request.outer.controller) return design_cascade(request.plants(), request.design(), control);
+    if (request.inner.controller) return given_cascade(request, {*request.inner.controller, *request.outer.controller});
+    auto inner = robust_settings(*request.inner.plant, request.inner.tune, control);
+    if (!inner) return Error{inner.error().kind, "inner", inner.error().message};
+    return given_cascade(request, {*inner, *request.outer.controller});
+}
+
+Expected<CascadeAnswer> answered(const CascadeRequest& request, const RunControl& control) {
+    auto result = cascade_of(request, control);
+    if (!result) return result.error();
+    if (result->partial) return stopped();
+    CascadeAnswer out;
+    out.result = std::move(*result);
+    out.limit_valve = request.design().valve_limit();
+    if (request.compare_single) {
+        auto single = design_single_loop(request.plants(), request.outer.tune, control);
+        if (single)
+            out.single = std::move(*single);
+        else
+            out.single.why = single.error().message;
+    } else {
+        out.single.why = "compare_single is false.";
+    }
+    if (request.baseline) {
+        auto today = judge_cascade(request.plants(), {*request.baseline->inner, *request.baseline->outer});
+        if (!today) return Error{today.error().kind, "baseline", today.error().message};
+        out.baseline = std::move(*today);
+    }
+    out.verdict = conclusions_on(out.result.figures, request.design(), out.single ? &*out.single : nullptr);
+    return out;
+}
+
+Expected<LevelAnswer> answered(const LevelRequest& request, const RunControl&) {
+    auto result = design_level(request.problem);
+    if (!result) return result.error();
+    LevelAnswer out{std::move(*result), {}};
+    out.verdict = conclusions_on(out.result, request.problem);
+    return out;
+}
+
+Expected<FeedforwardAnswer> answered(const FeedforwardRequest& request, const RunControl& control) {
+    FeedforwardAnswer out;
+    if (request.feedback.controller) {
+        out.feedback = *request.feedback.controller;
+    } else {
+        const auto settings = robust_settings(*request.plant, *request.feedback.tune, control);
+        if (!settings) return Error{settings.error().kind, "feedback", settings.error().message};
+        out.feedback = *settings;
+    }
+    const structure::FeedforwardProblem problem{.plant = *request.plant,
+                                                .disturbance = *request.disturbance,
+                                                .feedback = out.feedback,
+                                                .jump = request.feedforward.jump,
+                                                .given = request.controller,
+                                                .wrong = request.uncertainty};
+    auto result = design_feedforward(problem, control);
+    if (!result) return result.error();
+    if (result->partial) return stopped();
+    out.result = std::move(*result);
+    out.verdict = conclusions_on(out.result, problem);
+    return out;
+}
+
+Expected<PredictorAnswer> answered(const PredictorRequest& request, const RunControl& control) {
+    PredictorAnswer out;
+    if (request.controller) {
+        auto figures = judge_predictor(*request.plant, *request.controller);
+        if (!figures) return figures.error();
+        out.controller = *request.controller;
+        out.figures = std::move(*figures);
+        out.pid.why = out.pid_IAE.why = "A given controller is not compared.";
+        out.verdict = conclusions_on(out.figures, out.pid_IAE, false, request.plant->dead_time());
+        return out;
+    }
+    auto result = design_predictor(request.of_model, *request.plant, request.design, control);
+    if (!result) return result.error();
+    if (control.stop.stop_requested()) return stopped();
+    out.controller = std::move(result->controller);
+    out.figures = std::move(result->figures);
+    out.pid = {result->pid, result->pid_IAE.why};
+    out.pid_IAE = std::move(result->pid_IAE);
+    out.verdict = conclusions_on(out.figures, out.pid_IAE, result->limited_by_dead_time, request.plant->dead_time());
+    return out;
+}
+
+std::vector<IdealPid> known(const std::vector<std::optional<IdealPid>>& given) {
+    std::vector<IdealPid> out;
+    for (const auto& one : given) out.push_back(*one);
+    return out;
+}
+
+double cost_of(const structure::InteractionFigures& figures, const InteractionRequest& request) {
+    double sum = 0;
+    for (const auto& row : figures.IAE_load)
+        for (std::size_t i = 0; i < row.size(); ++i) sum += request.weight(i) * row[i];
+    return sum;
+}
+
+/// The place of the requested pairing; that of the best one if none is requested.
+std::size_t chosen_pairing(const structure::GainAnalysis& gains, const InteractionRequest& request) {
+    if (!request.pairing) return 0;
+    std::vector<int> wanted = *request.pairing;
+    for (int& input : wanted) --input;
+    return std::size_t(std::ranges::find(gains.pairings, wanted, &structure::Pairing::input_of) -
+                       gains.pairings.begin());
+}
+
+/// The figures of controllers for comparison, or the reason why there are none.
+Expected<ComparedControllers> compared(const char* name, std::vector<IdealPid> controllers, std::string why,
+                                       const structure::PlantMatrix& plants, const InteractionRequest& request) {
+    ComparedControllers out{.name = name, .controllers = std::move(controllers), .figures = {}, .why = std::move(why)};
+    if (out.controllers.empty()) return out;
+    auto figures = structure::judge_interaction(plants, out.controllers);
+    if (!figures) return Error{figures.error().kind, name, figures.error().message};
+    out.figures = std::move(*figures);
+    out.cost = cost_of(out.figures, request);
+    return out;
+}
+
+Expected<InteractionAnswer> answered(const InteractionRequest& request, const RunControl& control) {
+    auto gains = structure::analyse_gains(request.plant);
+    if (!gains) return gains.error();
+    InteractionAnswer out;
+    out.gains = std::move(*gains);
+    out.chosen = chosen_pairing(out.gains, request);
+    const auto plants = structure::paired(request.plant, out.gains.pairings[out.chosen].input_of);
+    OrReason<structure::BltSettings> blt;
+    std::vector<IdealPid> detuned;
+    if (request.controllers.given.empty()) {
+        auto result = structure::design_interaction(plants,
+                                                    {.derivative = request.controllers.kind == ControllerKind::PID,
+                                                     .mu = request.limit.mu,
+                                                     .weight = request.weights.y},
+                                                    control);
+        if (!result) return result.error();
+        if (result->partial) return stopped();
+        out.controllers = std::move(result->controllers);
+        out.figures = std::move(result->figures);
+        blt = std::move(result->blt);
+        detuned = std::move(result->detuned);
+    } else {
+        out.controllers = known(request.controllers.given);
+        auto figures = structure::judge_interaction(plants, out.controllers);
+        if (!figures) return figures.error();
+        out.figures = std::move(*figures);
+        blt.why = "Nothing was designed.";
+    }
+    out.cost = cost_of(out.figures, request);
+    out.F = blt ? Figure(blt->F) : no_figure(blt.why);
+    double blt_cost = std::numeric_limits<double>::infinity();
+    for (const std::string& name : request.compare) {
+        const bool is_blt = name == "blt";
+        auto one =
+            compared(is_blt ? "blt" : "detuned", is_blt ? (blt ? blt->controllers : std::vector<IdealPid>{}) : detuned,
+                     is_blt            ? blt.why
+                     : detuned.empty() ? "None keeps the limit."
+                                       : "",
+                     plants, request);
+        if (!one) return one.error();
+        if (is_blt && one->figures.stable) blt_cost = one->cost;
+        out.compared.push_back(std::move(*one));
+    }
+    if (request.baseline) {
+        auto today = compared("baseline", known(request.baseline->given), "", plants, request);
+        if (!today) return today.error();
+        out.compared.push_back(std::move(*today));
+    }
+    out.verdict = conclusions_on(out.figures, out.gains, out.chosen, request.limit.mu, out.cost, blt_cost);
+    return out;
+}
+
+template <class Request, class Result>
+Answer call(std::string_view body, const Description<Request>& contract, const Description<Result>& result_contract,
+            const RunControl& control) {
+    const auto decoded = read_body(body, contract);
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
+    const auto result = answered(std::get<Request>(decoded), control);
+    if (!result) return refusal(to_problem(result.error()));
+    Writer out;
+    result_contract.write(*result, out);
+    return {200, out.take()};
+}
+
+}  // namespace
+
+Answer cascade_call(std::string_view body, const RunControl& control) {
+    return call(body, cascade_request_contract(), cascade_answer_contract(), control);
+}
+
+Answer level_call(std::string_view body, const RunControl& control) {
+    return call(body, level_request_contract(), level_answer_contract(), control);
+}
+
+Answer feedforward_call(std::string_view body, const RunControl& control) {
+    return call(body, feedforward_request_contract(), feedforward_answer_contract(), control);
+}
+
+Answer interaction_call(std::string_view body, const RunControl& control) {
+    return call(body, interaction_request_contract(), interaction_answer_contract(), control);
+}
+
+Answer predictor_call(std::string_view body, const RunControl& control) {
+    return call(body, predictor_request_contract(), predictor_answer_contract(), control);
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,298 @@
+#include "engine/blocks/diagram_response.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/blocks/diagram_steps.h"
+#include "engine/numerics/cubic.h"
+#include "engine/simulation/run/delayed_input.h"
+#include "engine/simulation/run/stopping_rule.h"
+
+namespace tunewright {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kSameInstant = 1e-9;  // of the shortest step
+constexpr double kOfDeadTime = 0.25;   // first step over the shortest dead time
+constexpr double kOfRate = 0.1;        // first step times the fastest rate
+constexpr int kEchoes = 4;             // passages through dead times after which a jump no longer counts
+constexpr double kNearZero = 1e-5;     // frequency, of 1/time_scale, from which the values at 0 are extrapolated
+constexpr double kNoError = 1e-9;      // of the step: the error's final value
+constexpr int kIterations = 12;        // of a step that is longer than a dead time
+constexpr double kConverged = 1e-10;   // of the largest value
+constexpr double kOneLevel = 16;       // by which half the step lowers the error
+constexpr double kUnbounded = 1e6;
+
+/// The signal's value before t = 0 and after, on either side of a jump.
+struct Sides {
+    Signal before, after;
+};
+
+}  // namespace
+
+class DiagramRun {
+public:
+    DiagramRun(const BlockDiagram& diagram, const DiagramSystem& system, const std::vector<DiagramStep>& steps,
+               const DiagramResponseOptions& options)
+        : system_(system),
+          options_(options),
+          w_(VectorXd::Zero(system.signals())),
+          z_(VectorXd::Zero(system.states())),
+          cursor_(system.delayed.size(), 0),
+          v_(VectorXd::Zero(Index(system.delayed.size()))),
+          v_slope_(v_),
+          echoes_(echoes_that_count(largest_direct(system), options.tolerance, kEchoes)),
+          stopping_(options.settled, diagram.total_dead_time()) {
+        for (const DiagramStep& step : steps) w_[step.signal] += step.size;
+        input_ = system.H * w_;
+        out_.signals_ = static_cast<int>(system.signals());
+        out_.inputs_.assign(w_.data(), w_.data() + w_.size());
+        largest_ = VectorXd::Zero(system.signals());
+        if (!options.horizon) set_final(diagram);
+        steps_.emplace(system.F, system.G, input_, 1);
+        double h0 = kOfRate / std::max(steps_->rate(), 1e-300);
+        for (const auto& delayed : system.delayed) h0 = std::min(h0, kOfDeadTime * delayed.L);
+        if (options.horizon) h0 = std::min(h0, *options.horizon);
+        steps_.emplace(system.F, system.G, input_, h0);
+        slack_ = kSameInstant * h0;
+    }
+
+    DiagramResponse run() {
+        add_node(0);
+        for (const auto& delayed : system_.delayed) echoes_.add(delayed.L, 1, slack_);
+        for (int step = 0; step < options_.max_steps; ++step) {
+            const double t = out_.t_.back();
+            if (options_.horizon ? t >= *options_.horizon - slack_ : stopping_.has_settled(t)) return std::move(out_);
+            if (largest_.maxCoeff() > kUnbounded * (1 + w_.cwiseAbs().maxCoeff()) && !options_.horizon) break;
+            choose_level();
+            take_step(t);
+        }
+        out_.settles_ = false;
+        return std::move(out_);
+    }
+
+private:
+    static double largest_direct(const DiagramSystem& system) {
+        return system.N.size() > 0 ? std::min(0.99, system.N.cwiseAbs().maxCoeff()) : 0;
+    }
+
+    /// The signals' transforms times s at s = 0 and their slope there, from the parabola through h, 2 h and 3 h.
+    void set_final(const BlockDiagram& diagram) {
+        const double h = kNearZero / diagram.time_scale();
+        std::array<VectorXd, 3> at;
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            at[i] = VectorXd::Zero(system_.signals());
+            for (Index k = 0; k < w_.size(); ++k)
+                if (w_[k] != 0) at[i] += w_[k] * diagram.response(double(i + 1) * h, int(k)).real();
+        }
+        const VectorXd value = 3 * at[0] - 3 * at[1] + at[2], slope = (-2.5 * at[0] + 4 * at[1] - 1.5 * at[2]) / h;
+        out_.final_.assign(value.data(), value.data() + value.size());
+        out_.slope_.assign(slope.data(), slope.data() + slope.size());
+    }
+
+    VectorXd signals(const VectorXd& z, const VectorXd& v) const {
+        return system_.M * z + system_.N * v + system_.R * w_;
+    }
+    VectorXd slopes(const VectorXd& z, const VectorXd& v, const VectorXd& v_slope) const {
+        return system_.M * (system_.F * z + system_.G * v + input_) + system_.N * v_slope;
+    }
+
+    void add_node(double t) {
+        const VectorXd x = signals(z_, v_), slope = slopes(z_, v_, v_slope_);
+        out_.t_.push_back(t);
+        out_.values_.insert(out_.values_.end(), x.data(), x.data() + x.size());
+        out_.values_.insert(out_.values_.end(), slope.data(), slope.data() + slope.size());
+        largest_ = largest_.cwiseMax(x.cwiseAbs());
+        if (options_.horizon) return;
+        double worst = 0;
+        for (Index i = 0; i < x.size(); ++i)
+            if (largest_[i] > 0) worst = std::max(worst, std::abs(x[i] - out_.final_[std::size_t(i)]) / largest_[i]);
+        stopping_.note(t, worst, 1, 0, 1);
+    }
+
+    /// Delayed signal k on either side of a time that is not after the last node.
+    Sides delayed_at(std::size_t k, double t) {
+        const auto& [from, L] = system_.delayed[k];
+        const double then = t - L;
+        if (then < -slack_) return {};
+        auto& i = cursor_[k];
+        const auto& times = out_.t_;
+        while (i + 1 < times.size() && times[i + 1] < then - slack_) ++i;
+        while (i > 0 && times[i] >= then - slack_) --i;
+        // times[i] lies before, or i is 0.
+        std::size_t last = i;
+        while (last + 1 < times.size() && times[last + 1] <= then + slack_) ++last;
+        const bool at_first = std::abs(times[i] - then) <= slack_;
+        if (last > i || at_first) {
+            const std::size_t first = at_first ? i : i + 1;
+            const bool start = first == 0;
+            return {start ? Signal{} : out_.at(first, from), out_.at(last, from)};
+        }
+        const double h = times[i + 1] - times[i], s = then - times[i];
+        const Cubic c = hermite_taylor(h, out_.at(i, from), out_.at(i + 1, from));
+        const Signal here{value_at(c, s), slope_at(c, s)};
+        return {here, here};
+    }
+
+    void choose_level() {
+        if (equal_steps_ < 2) return;
+        const std::size_t last = out_.t_.size() - 1;
+        const double h = out_.t_[last] - out_.t_[last - 2];
+        double worst = 0;
+        for (int i = 0; i < out_.signals_; ++i) {
+            if (!(largest_[i] > 0)) continue;
+            const double middle = hermite_midpoint(h, out_.at(last - 2, i), out_.at(last, i));
+            worst = std::max(worst, std::abs(out_.at(last - 1, i).value - middle) / largest_[i]);
+        }
+        if (worst <= options_.tolerance) {
+            ++level_;
+            equal_steps_ = 0;
+        } else if (worst > kOneLevel * options_.tolerance && level_ > 0) {
+            --level_;
+            equal_steps_ = 0;
+        }
+    }
+
+    void take_step(double t) {
+        double h = std::ldexp(steps_->h0(), level_);
+        double until = t + h;
+        const auto echo = echoes_.next();
+        bool odd = false;
+        if (echo && *echo <= until + slack_) {
+            odd = std::abs(*echo - until) > slack_;
+            until = *echo;
+        }
+        if (options_.horizon && *options_.horizon <= until + slack_) {
+            odd = odd || std::abs(*options_.horizon - until) > slack_;
+            until = *options_.horizon;
+        }
+        const bool taken = odd ? advance(steps_->step(until - t), t, until) : advance(steps_->level(level_), t, until);
+        if (!taken) {
+            --level_;
+            equal_steps_ = 0;
+            return;
+        }
+        equal_steps_ = odd ? 0 : equal_steps_ + 1;
+        if (const auto passages = echoes_.pass(until + slack_)) pass_echo(until, *passages);
+    }
+
+    void pass_echo(double t, int passages) {
+        bool jumps = false;
+        for (std::size_t k = 0; k < system_.delayed.size(); ++k) {
+            const Sides sides = delayed_at(k, t);
+            jumps = jumps || sides.before.value != sides.after.value || sides.before.slope != sides.after.slope;
+            v_[Index(k)] = sides.after.value;
+            v_slope_[Index(k)] = sides.after.slope;
+            echoes_.add(t + system_.delayed[k].L, passages + 1, slack_);
+        }
+        if (!jumps) return;
+        add_node(t);
+        level_ = 0;
+        equal_steps_ = 0;
+    }
+
+    /// False: the iteration of a step longer than a dead time does not converge.
+    bool advance(const ManyInputsStep& map, double t, double until) {
+        const std::size_t count = system_.delayed.size(), now = out_.t_.size() - 1;
+        const double h = until - t;
+        VectorXd end(v_), end_slope(v_slope_);
+        std::vector<std::size_t> unknown;
+        for (std::size_t k = 0; k < count; ++k) {
+            if (system_.delayed[k].L < h - slack_) {
+                unknown.push_back(k);
+                continue;
+            }
+            const Sides sides = delayed_at(k, until);
+            end[Index(k)] = sides.before.value;
+            end_slope[Index(k)] = sides.before.slope;
+        }
+        VectorXd last_value =
+            Eigen::Map<const VectorXd>(&out_.values_[now * 2 * std::size_t(out_.signals_)], out_.signals_);
+        VectorXd last_slope =
+            Eigen::Map<const VectorXd>(&out_.values_[(now * 2 + 1) * std::size_t(out_.signals_)], out_.signals_);
+        const VectorXd first_value = last_value, first_slope = last_slope;
+        last_value += h * first_slope;
+        VectorXd z;
+        for (int i = 0; i < kIterations; ++i) {
+            for (const std::size_t k : unknown) {
+                const auto& [from, L] = system_.delayed[k];
+                const Cubic c =
+                    hermite_taylor(h, {first_value[from], first_slope[from]}, {last_value[from], last_slope[from]});
+                end[Index(k)] = value_at(c, h - L);
+                end_slope[Index(k)] = slope_at(c, h - L);
+            }
+            z = map.Phi * z_ + map.constant;
+            add_inputs(map, end, end_slope, z);
+            if (unknown.empty()) break;
+            const VectorXd value = signals(z, end);
+            const double change = (value - last_value).cwiseAbs().cwiseQuotient(largest_.cwiseMax(1e-300)).maxCoeff();
+            last_value = value;
+            last_slope = slopes(z, end, end_slope);
+            if (change < kConverged) break;
+            if (i + 1 == kIterations) return false;
+        }
+        z_ = std::move(z);
+        v_ = std::move(end);
+        v_slope_ = std::move(end_slope);
+        add_node(until);
+        return true;
+    }
+
+    void add_inputs(const ManyInputsStep& map, const VectorXd& end, const VectorXd& end_slope, VectorXd& z) const {
+        if (v_.size() == 0) return;
+        const double h = map.h;
+        const VectorXd mean_slope = (end - v_) / h;
+        z += map.Gamma[0] * v_ + map.Gamma[1] * v_slope_ +
+             map.Gamma[2] * ((6 * mean_slope - 4 * v_slope_ - 2 * end_slope) / h) +
+             map.Gamma[3] * ((6 * (v_slope_ + end_slope) - 12 * mean_slope) / (h * h));
+    }
+
+    const DiagramSystem& system_;
+    const DiagramResponseOptions& options_;
+    VectorXd w_, input_, z_;
+    std::vector<std::size_t> cursor_;  // of each delayed signal: a node before it
+    VectorXd v_, v_slope_;             // now, after a jump
+    Echoes echoes_;
+    StoppingRule stopping_;
+    DiagramResponse out_;
+    VectorXd largest_;  // of each signal so far
+    std::optional<ManyInputsPropagator> steps_;
+    double slack_ = 0;
+    int level_ = 0, equal_steps_ = 0;
+};
+
+Expected<DiagramResponse> DiagramResponse::of(const BlockDiagram& diagram, const std::vector<DiagramStep>& steps,
+                                              const DiagramResponseOptions& options) {
+    const auto system = make_system(diagram);
+    if (!system) return system.error();
+    return DiagramRun(diagram, *system, steps, options).run();
+}
+
+StepResponse DiagramResponse::pair(int y, int u, double r) const {
+    StepResponse out;
+    out.settles = settles_;
+    if (!final_.empty()) {
+        out.y_final = final_[std::size_t(y)];
+        out.u_final = final_[std::size_t(u)] - inputs_[std::size_t(u)];
+        if (std::abs(r - out.y_final) <= kNoError * std::max(1.0, std::abs(r)))
+            out.error_integral_final = -slope_[std::size_t(y)];
+    }
+    out.nodes.reserve(t_.size());
+    double integral = 0;
+    for (std::size_t i = 0; i < t_.size(); ++i) {
+        const Signal own = at(i, y), output = at(i, u);
+        if (i > 0) {
+            const double h = t_[i] - t_[i - 1];
+            integral += h * r - hermite_integral(h, at(i - 1, y), own);
+        }
+        out.nodes.push_back(
+            {t_[i], own.value, own.slope, output.value - inputs_[std::size_t(u)], output.slope, integral});
+    }
+    return out;
+}
+
+}  // namespace tunewright

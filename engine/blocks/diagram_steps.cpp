@@ -1,0 +1,71 @@
+#include "engine/blocks/diagram_steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/numerics/matrix/eigenvalues.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kTerms = 14;            // of Taylor's series: 0.5^14/14! is below rounding
+constexpr double kLargestTerm = 0.5;  // rate times step
+
+}  // namespace
+
+ManyInputsStep ManyInputsStep::doubled() const {
+    ManyInputsStep out{.h = 2 * h, .Phi = Phi * Phi, .Gamma = {}, .constant = Phi * constant + constant};
+    // The second half begins with the derivatives v^(j)(h) = sum_{m >= j} v_m h^(m-j)/(m-j)!.
+    for (std::size_t m = 0; m < Gamma.size(); ++m) {
+        out.Gamma[m] = Phi * Gamma[m];
+        double factor = 1;
+        for (std::size_t back = 0; back <= m; ++back) {
+            out.Gamma[m] += factor * Gamma[m - back];
+            factor *= h / double(back + 1);
+        }
+    }
+    return out;
+}
+
+ManyInputsPropagator::ManyInputsPropagator(const Eigen::MatrixXd& F, const Eigen::MatrixXd& G, const Eigen::VectorXd& c,
+                                           double h0)
+    : F_(F), G_(G), c_(c), h0_(h0) {
+    const auto n = static_cast<int>(F.rows());
+    rate_ = n > 0 ? balanced_norm({F.data(), static_cast<std::size_t>(F.size())}, n) : 0;
+    powers_.push_back(Eigen::MatrixXd::Identity(n, n));
+    for (int i = 1; i < kTerms; ++i) powers_.push_back(powers_.back() * F_);
+}
+
+ManyInputsStep ManyInputsPropagator::step(double h) const {
+    const int doublings =
+        std::max(0, static_cast<int>(std::ceil(std::log2(std::max(h * rate_ / kLargestTerm, 1e-300)))));
+    ManyInputsStep out;
+    out.h = std::ldexp(h, -doublings);
+    const Eigen::Index n = F_.rows();
+    // Psi_j = sum F^i h^(i+j)/(i+j)!, of which Psi_0 is Phi and the next ones take the inputs.
+    std::array<Eigen::MatrixXd, 5> Psi;
+    double first = 1;
+    for (std::size_t j = 0; j < Psi.size(); ++j) {
+        Psi[j] = Eigen::MatrixXd::Zero(n, n);
+        double term = first;
+        for (std::size_t i = 0; i < powers_.size(); ++i) {
+            Psi[j] += term * powers_[i];
+            term *= out.h / double(i + j + 1);
+        }
+        first *= out.h / double(j + 1);
+    }
+    out.Phi = Psi[0];
+    for (std::size_t j = 0; j < out.Gamma.size(); ++j) out.Gamma[j] = Psi[j + 1] * G_;
+    out.constant = Psi[1] * c_;
+    for (int i = 0; i < doublings; ++i) out = out.doubled();
+    out.h = h;
+    return out;
+}
+
+const ManyInputsStep& ManyInputsPropagator::level(int level) {
+    if (levels_.empty()) levels_.push_back(step(h0_));
+    while (static_cast<int>(levels_.size()) <= level) levels_.push_back(levels_.back().doubled());
+    return levels_[static_cast<std::size_t>(level)];
+}
+
+}  // namespace tunewright

@@ -1,0 +1,318 @@
+#include "engine/structure/cascade.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "engine/blocks/diagram_loop.h"
+#include "engine/loop/peaks.h"
+#include "engine/structure/cascade_diagram.h"
+#include "engine/structure/limited_search.h"
+#include "engine/structure/local_peaks.h"
+#include "engine/structure/step_figures.h"
+
+namespace tunewright::structure {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kValveOverLoops = 1.15;                       // the default limit on Ms_valve
+constexpr int kPerDecade = 40;                                 // frequencies of a search
+constexpr double kLeastPeak = -0.3;                            // ln below a limit: peaks that a step may reach
+constexpr double kMostMove = 4;                                // ln of a setting from its start
+constexpr double kWeaker[] = {1, 0.7, 0.45, 0.25, 0.1, 0.03};  // factors of the outer gain until the limits hold
+
+Peaks peaks_at(const BlockDiagram& diagram, int signal) {
+    const DiagramLoop loop(diagram, signal);
+    return find_peaks(loop, make_peak_grid(loop));
+}
+
+/// A PID in logarithms, with the filter of its start's ratio to Td.
+class Settings {
+public:
+    explicit Settings(const IdealPid& start) : start_(start) {}
+
+    Index count() const { return start_.Td > 0 ? 3 : start_.has_integral() ? 2 : 1; }
+    VectorXd of_start() const {
+        VectorXd x(count());
+        x[0] = std::log(std::abs(start_.Kp));
+        if (count() > 1) x[1] = std::log(start_.Ti);
+        if (count() > 2) x[2] = std::log(start_.Td);
+        return x;
+    }
+    const IdealPid& start() const { return start_; }
+    IdealPid at(const Eigen::Ref<const VectorXd>& x) const {
+        IdealPid pid = start_;
+        pid.Kp = std::copysign(std::exp(x[0]), start_.Kp);
+        if (count() > 1) pid.Ti = std::exp(x[1]);
+        if (count() > 2) {
+            pid.Td = std::exp(x[2]);
+            pid.filter.Tf *= pid.Td / start_.Td;
+        }
+        return pid;
+    }
+
+private:
+    IdealPid start_;
+};
+
+/// Frequencies from far below to far above both loops.
+std::vector<double> search_grid(const CascadePlants& plants) {
+    double low = kInfinity, high = 0;
+    for (const LinearPlant* plant : {&plants.inner, &plants.outer}) {
+        const auto add = [&](double omega) {
+            if (!(omega > 0) || !std::isfinite(omega)) return;
+            low = std::min(low, omega);
+            high = std::max(high, omega);
+        };
+        add(1 / plant->time_scale());
+        for (const auto pole : plant->poles()) add(std::abs(pole));
+        if (plant->dead_time() > 0) add(1 / plant->dead_time());
+    }
+    if (!(high > 0)) low = high = 1;
+    return logarithmic(low * 1e-2, high * 1e2, kPerDecade);
+}
+
+/// ln of the functions over their limits: S and T of the outer loop, S at the valve, S of the inner loop.
+void excess_of(const CascadeDiagram& all, const CascadeDiagram& inner, const CascadeDesign& limits, bool sequential,
+               double omega, std::vector<double>& excess) {
+    const std::complex<double> s(0, omega);
+    const auto outer = all.diagram.response(s, all.r2)[all.r2], valve = all.diagram.response(s, all.valve)[all.valve];
+    excess = {std::log(std::abs(outer) / limits.outer.Ms), std::log(std::abs(valve) / limits.valve_limit())};
+    if (sequential)
+        excess.push_back(std::log(std::abs(1.0 - outer) / limits.outer.Mt));
+    else
+        excess.push_back(std::log(std::abs(inner.diagram.response(s, inner.valve)[inner.valve]) / limits.inner.Ms));
+}
+
+/// One search over the settings of the outer, or of both controllers.
+class CascadeSearch {
+public:
+    CascadeSearch(const CascadePlants& plants, const CascadeDesign& design, const CascadeControllers& start,
+                  const RunControl& control)
+        : plants_(plants),
+          design_(design),
+          inner_(start.inner),
+          outer_(start.outer),
+          grid_(search_grid(plants)),
+          control_(control) {}
+
+    LimitedResult outer_only(const VectorXd& start) const { return run(start, false); }
+    LimitedResult joint(const VectorXd& start) const { return run(start, true); }
+
+    VectorXd start(bool joint) const {
+        if (!joint) return outer_.of_start();
+        VectorXd x(outer_.count() + inner_.count());
+        x << outer_.of_start(), inner_.of_start();
+        return x;
+    }
+
+    CascadeControllers controllers(const VectorXd& x) const {
+        const Index n = outer_.count();
+        return {x.size() > n ? inner_.at(x.tail(x.size() - n)) : inner_.start(), outer_.at(x.head(n))};
+    }
+
+    /// ln of the largest excess, infinite if the loops are not stable.
+    double excess(const VectorXd& x) const {
+        if (!std::isfinite(log_cost(x, false))) return kInfinity;
+        double most = -kInfinity;
+        for (const LimitedPeak& peak : peaks(x, false)) most = std::max(most, peak.excess);
+        return most;
+    }
+
+private:
+    struct Diagrams {
+        CascadeDiagram all, inner;
+    };
+    Diagrams diagrams(const VectorXd& x) const {
+        const CascadeControllers both = controllers(x);
+        return {std::move(*cascade_diagram(plants_, both.inner, &both.outer)),
+                std::move(*cascade_diagram(plants_, both.inner, nullptr))};
+    }
+
+    double log_cost(const VectorXd& x, bool joint) const {
+        const CascadeDiagram all = std::move(diagrams(x).all);
+        if (!count_unstable_poles(all.diagram).stable()) return kInfinity;
+        const double outer = quick_IAE(all.diagram, all.outer_input, all.y1, 0);
+        if (!joint) return std::log(outer);
+        return std::log(design_.weight_outer * outer +
+                        design_.weight_inner * quick_IAE(all.diagram, all.valve, all.y1, 0));
+    }
+
+    std::vector<LimitedPeak> peaks(const VectorXd& x, bool joint) const {
+        const Diagrams both = diagrams(x);
+        return local_peaks(
+            grid_,
+            [&](double omega, std::vector<double>& excess) {
+                excess_of(both.all, both.inner, design_, !joint, omega, excess);
+            },
+            kLeastPeak);
+    }
+
+    LimitedResult run(const VectorXd& start, bool joint) const {
+        LimitedProblem problem;
+        problem.log_cost = [&](const VectorXd& x) { return log_cost(x, joint); };
+        problem.peaks = [&](const VectorXd& x) { return peaks(x, joint); };
+        problem.excess_at = [&](const VectorXd& x, int function, double omega) {
+            const Diagrams both = diagrams(x);
+            std::vector<double> excess;
+            excess_of(both.all, both.inner, design_, !joint, omega, excess);
+            return excess[std::size_t(function)];
+        };
+        problem.low = start.array() - kMostMove;
+        problem.high = start.array() + kMostMove;
+        return search_within_limits(problem, start, {.stop = control_.stop});
+    }
+
+    const CascadePlants& plants_;
+    const CascadeDesign& design_;
+    Settings inner_, outer_;
+    std::vector<double> grid_;
+    const RunControl& control_;
+};
+
+/// The plant that the outer controller sees, roughly: the closed inner loop as a dead time of its lag.
+Expected<LinearPlant> rough_outer_plant(const CascadePlants& plants, const IdealPid& inner) {
+    const auto closed = cascade_diagram(plants, inner, nullptr);
+    if (!closed) return closed.error();
+    const double h = 1e-4 / closed->diagram.time_scale();
+    const auto to_y1 = [&](double s) { return closed->diagram.response(s, closed->r2)[closed->y1].real(); };
+    Zpk plant = factors_of(plants.outer);
+    const double ratio = to_y1(h) / plants.outer.at(h).real();
+    plant.K *= ratio;
+    // -d ln(to_y1/P1)/ds at 0: the delay that the inner loop adds.
+    const double delay = -std::log(to_y1(2 * h) / plants.outer.at(2 * h).real() / ratio) / h;
+    plant.L += std::max(0.0, delay);
+    return LinearPlant::make(Plant(plant));
+}
+
+CascadeControllers sequential(const CascadePlants& plants, const CascadeDesign& design, CascadeControllers start,
+                              const RunControl& control, LimitedResult& best) {
+    for (const double weaker : kWeaker) {
+        IdealPid outer = start.outer;
+        outer.Kp *= weaker;
+        const CascadeSearch search(plants, design, {start.inner, outer}, control);
+        if (!(search.excess(search.start(false)) < 0.2)) continue;
+        best = search.outer_only(search.start(false));
+        return search.controllers(best.x);
+    }
+    return start;
+}
+
+/// The place of a loop's error in the request.
+Error below(const char* loop, Error error) {
+    error.where = loop + (error.where.empty() ? std::string() : "/" + error.where);
+    return error;
+}
+
+Error unstable_inner() {
+    return {
+        ErrorKind::invalid_argument, "inner/controller",
+        "The inner loop is not stable with this controller, so no outer controller can be designed. Lower its gain, "
+        "or leave it out: it is then designed too."};
+}
+
+/// Figures of y1 after unit steps of both loads and the set point.
+std::optional<Error> add_responses(const CascadeDiagram& all, LoadFigures& inner_load, LoadFigures& outer_load,
+                                   LoadFigures& setpoint) {
+    const auto add = [&](int signal, double target, LoadFigures& to) -> std::optional<Error> {
+        const auto figures = step_figures(all.diagram, signal, all.y1, all.valve, target);
+        if (!figures) return figures.error();
+        to = {figures->IAE, figures->IE, target == 0 ? figures->peak : figures->overshoot, figures->TV};
+        return std::nullopt;
+    };
+    if (auto error = add(all.valve, 0, inner_load)) return error;
+    if (auto error = add(all.outer_input, 0, outer_load)) return error;
+    return add(all.r1, 1, setpoint);
+}
+
+}  // namespace
+
+double default_valve_limit(double Ms_inner, double Ms_outer) { return kValveOverLoops * std::max(Ms_inner, Ms_outer); }
+
+double CascadeDesign::valve_limit() const { return Ms_valve.value_or(default_valve_limit(inner.Ms, outer.Ms)); }
+
+Expected<CascadeFigures> judge_cascade(const CascadePlants& plants, const CascadeControllers& controllers) {
+    const auto all = cascade_diagram(plants, controllers.inner, &controllers.outer);
+    if (!all) return all.error();
+    const auto inner = cascade_diagram(plants, controllers.inner, nullptr);
+    CascadeFigures out;
+    out.stable = count_unstable_poles(all->diagram).stable() && count_unstable_poles(inner->diagram).stable();
+    if (!out.stable) return out;
+    const DiagramLoop own(inner->diagram, inner->valve), outer(all->diagram, all->r2);
+    const LoopGrid own_grid = make_peak_grid(own), grid = make_peak_grid(outer);
+    const Peaks of_inner = find_peaks(own, own_grid), of_outer = find_peaks(outer, grid),
+                of_valve = peaks_at(all->diagram, all->valve);
+    out.Ms_inner = of_inner.S.value;
+    out.Mt_inner = of_inner.T.value;
+    out.Ms_outer = of_outer.S.value;
+    out.Mt_outer = of_outer.T.value;
+    out.Ms_valve = of_valve.S.value;
+    out.outer_margins = find_margins(outer, grid);
+    const double fast = find_margins(own, own_grid).gain_crossover, slow = out.outer_margins.gain_crossover;
+    out.speed_ratio = fast > 0 && slow > 0 ? Figure(fast / slow) : no_figure("A loop has no gain crossover.");
+    if (auto error = add_responses(*all, out.inner_load, out.outer_load, out.setpoint)) return *error;
+    return out;
+}
+
+Expected<CascadeResult> design_cascade(const CascadePlants& plants, const CascadeDesign& design,
+                                       const RunControl& control) {
+    auto inner = design.given_inner ? Expected<IdealPid>(*design.given_inner)
+                                    : robust_settings(plants.inner, design.inner, control);
+    if (!inner) return below("inner", inner.error());
+    const auto closed = cascade_diagram(plants, *inner, nullptr);
+    if (!closed) return closed.error();
+    if (!count_unstable_poles(closed->diagram).stable()) return unstable_inner();
+    const auto rough = rough_outer_plant(plants, *inner);
+    if (!rough) return below("outer", rough.error());
+    auto outer = robust_settings(*rough, design.outer, control);
+    if (!outer) return below("outer", outer.error());
+    CascadeResult result;
+    LimitedResult found;
+    result.controllers = sequential(plants, design, {*inner, *outer}, control, found);
+    if (!std::isfinite(found.log_cost) && control.stop.stop_requested())
+        return Error{ErrorKind::cancelled, "", "The search was stopped before it found settings."};
+    if (!std::isfinite(found.log_cost))
+        return Error{
+            ErrorKind::no_feasible_controller, "limits",
+            "No outer controller keeps the limits with this inner one; allow a larger Ms, or a slower inner loop."};
+    if (design.joint && !found.stopped) {
+        const CascadeSearch search(plants, design, result.controllers, control);
+        const LimitedResult both = search.joint(search.start(true));
+        if (std::isfinite(both.log_cost) && both.excess <= limits::kMaxRelativeExcessFound) {
+            found = both;
+            result.controllers = search.controllers(both.x);
+        }
+    }
+    result.partial = found.stopped;
+    auto figures = judge_cascade(plants, result.controllers);
+    if (!figures) return figures.error();
+    result.figures = *figures;
+    return result;
+}
+
+Expected<SingleLoop> design_single_loop(const CascadePlants& plants, const LoopDesign& design,
+                                        const RunControl& control) {
+    const auto whole = plants.arrangement == Arrangement::series
+                           ? LinearPlant::make(Plant(factors_of(plants.inner, plants.outer)))
+                           : Expected<LinearPlant>(plants.outer);
+    if (!whole) return whole.error();
+    auto controller = robust_settings(*whole, design, control);
+    if (!controller) return controller.error();
+    SingleLoop out{.controller = *controller, .inner_load = {}, .outer_load = {}, .setpoint = {}};
+    const auto all = single_diagram(plants, out.controller);
+    if (!all) return all.error();
+    out.stable = count_unstable_poles(all->diagram).stable();
+    if (!out.stable) return out;
+    const Peaks peaks = peaks_at(all->diagram, all->valve);
+    out.Ms = peaks.S.value;
+    out.Mt = peaks.T.value;
+    if (auto error = add_responses(*all, out.inner_load, out.outer_load, out.setpoint)) return *error;
+    return out;
+}
+
+}  // namespace tunewright::structure

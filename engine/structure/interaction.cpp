@@ -1,0 +1,472 @@
+#include "engine/structure/interaction.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "engine/blocks/diagram_loop.h"
+#include "engine/loop/margins.h"
+#include "engine/loop/peaks.h"
+#include "engine/structure/interaction_gains.h"
+#include "engine/structure/limited_search.h"
+#include "engine/structure/local_peaks.h"
+#include "engine/structure/loop_design.h"
+#include "engine/structure/step_figures.h"
+#include "engine/structure/structured_peak.h"
+#include "engine/tuning/limits.h"
+
+namespace tunewright::structure {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+/// On the stack: two or three rows.
+using Response = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+using Eigen::VectorXd;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kPerDecade = 30, kPerDecadeJudged = 200;        // frequencies of a search, of the answer
+constexpr double kBelow = 1e-3, kAbove = 1e2;                 // of the corners
+constexpr double kLeastPeak = -0.3;                           // ln below a limit
+constexpr double kMostMove = 5;                               // ln of a setting from its start
+constexpr double kUltimateOverKp = 2.2, kPeriodOverTi = 1.2;  // Luyben 1986
+constexpr double kDecibels = 2;                               // of the log modulus, for each loop
+constexpr double kLeastF = 0.3, kMostF = 1000;
+constexpr double kWeaker[] = {1, 0.7, 0.5, 0.35, 0.25, 0.15, 0.08};
+constexpr double kStartAbove = 1.2;  // mu of a start over its limit
+constexpr double kFaster = 3;        // factor of a start with one loop quick and the other slow
+constexpr double kTf_over_Td = 0.1;
+
+/// The loops of `closed`, of those there are.
+struct LoopsDiagram {
+    BlockDiagram blocks;
+    std::vector<int> y, u, r;  ///< r: the controller's error; -1 for a loop in manual
+};
+
+/// The plant times s^n.
+LinearPlant without_integrators(const LinearPlant& plant, int n) {
+    Zpk out = factors_of(plant);
+    for (int i = 0; i < n; ++i) out.poles.erase(std::ranges::find(out.poles, Complex(0)));
+    return std::move(*LinearPlant::make(Plant(out)));
+}
+
+/// Plants from several inputs to one output. Integrators that they share stand behind their sum: as one in each they
+/// would be modes that no controller moves.
+void add_row(BlockDiagram& blocks, const std::vector<std::pair<int, const LinearPlant*>>& row, int y) {
+    int integrating = 0, shared = 0;
+    for (const auto& [u, plant] : row)
+        if (plant->integrators() > 0) {
+            shared = integrating == 0 ? plant->integrators() : std::min(shared, plant->integrators());
+            ++integrating;
+        }
+    if (integrating < 2) shared = 0;
+    const int sum = shared > 0 ? blocks.add_signal() : y;
+    if (shared > 0)
+        blocks.add(sum, y,
+                   std::move(*LinearPlant::make(
+                       Plant(Zpk{.K = 1, .zeros = {}, .poles = std::vector<Complex>(std::size_t(shared))}))));
+    for (const auto& [u, plant] : row)
+        if (shared > 0 && plant->integrators() > 0)
+            blocks.add(u, sum, without_integrators(*plant, shared));
+        else
+            blocks.add(u, y, *plant);
+}
+
+/// Plants of loops in manual are outside every loop and left out: their integrators and unstable poles are not the
+/// loops'.
+Expected<LoopsDiagram> diagram_of(const PlantMatrix& plants, const std::vector<IdealPid>& controllers,
+                                  unsigned closed) {
+    LoopsDiagram out;
+    const std::size_t n = plants.size();
+    const auto is_closed = [closed](std::size_t i) { return ((closed >> i) & 1u) != 0; };
+    for (std::size_t i = 0; i < n; ++i) out.y.push_back(out.blocks.add_signal());
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!is_closed(i)) {
+            out.u.push_back(out.blocks.add_signal());
+            out.r.push_back(-1);
+            continue;
+        }
+        const auto pid = add_pid(out.blocks, to_parallel(controllers[i]), out.y[i]);
+        if (!pid) return Error{pid.error().kind, "controllers/" + std::to_string(i), pid.error().message};
+        out.u.push_back(pid->output);
+        out.r.push_back(pid->error);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        std::vector<std::pair<int, const LinearPlant*>> row;
+        for (std::size_t j = 0; j < n; ++j)
+            if (plants[i][j] && is_closed(i) && is_closed(j)) row.emplace_back(out.u[j], &*plants[i][j]);
+        add_row(out.blocks, row, out.y[i]);
+    }
+    return out;
+}
+
+/// P(j omega), computed once at the frequencies of a grid, which a search visits again and again.
+class PlantResponses {
+public:
+    PlantResponses(const PlantMatrix& plants, std::vector<double> grid) : plants_(plants), omega_(std::move(grid)) {
+        for (const double omega : omega_) on_grid_.push_back(computed(omega));
+    }
+
+    const std::vector<double>& grid() const { return omega_; }
+
+    Response at(double omega) const {
+        const auto found = std::ranges::lower_bound(omega_, omega);
+        return found != omega_.end() && *found == omega ? on_grid_[std::size_t(found - omega_.begin())]
+                                                        : computed(omega);
+    }
+
+private:
+    Response computed(double omega) const {
+        const auto n = Index(plants_.size());
+        Response out = Response::Zero(n, n);
+        for (Index i = 0; i < n; ++i)
+            for (Index j = 0; j < n; ++j)
+                if (const auto& plant = plants_[std::size_t(i)][std::size_t(j)])
+                    out(i, j) = plant->at(Complex(0, omega));
+        return out;
+    }
+
+    const PlantMatrix& plants_;
+    std::vector<double> omega_;
+    std::vector<Response> on_grid_;
+};
+
+/// The sensitivity at the outputs: what enters at y_j, seen at y_i.
+Response sensitivity(const PlantResponses& plants, const std::vector<ParallelPid>& controllers, double omega) {
+    Response A = plants.at(omega);
+    for (Index j = 0; j < A.cols(); ++j)
+        A.col(j) *= controller_response(controllers[std::size_t(j)], Complex(0, omega));
+    A.diagonal().array() += 1;
+    return A.inverse();
+}
+
+std::vector<ParallelPid> parallel(const std::vector<IdealPid>& controllers) {
+    std::vector<ParallelPid> out;
+    for (const IdealPid& one : controllers) out.push_back(to_parallel(one));
+    return out;
+}
+
+std::vector<double> grid_of(const PlantMatrix& plants, int per_decade) {
+    double low = kInfinity, high = 0;
+    const auto add = [&](double omega) {
+        if (!(omega > 0) || !std::isfinite(omega)) return;
+        low = std::min(low, omega);
+        high = std::max(high, omega);
+    };
+    for (const auto& row : plants)
+        for (const auto& plant : row) {
+            if (!plant) continue;
+            add(1 / plant->time_scale());
+            for (const auto pole : plant->poles()) add(std::abs(pole));
+            add(1 / plant->dead_time());
+        }
+    return logarithmic(kBelow * low, kAbove * high, per_decade);
+}
+
+Peak mu_peak(const PlantResponses& plants, const std::vector<IdealPid>& controllers) {
+    const auto gains = parallel(controllers);
+    const auto peaks = local_peaks(
+        plants.grid(),
+        [&](double omega, std::vector<double>& excess) {
+            excess = {std::log(structured_value(sensitivity(plants, gains, omega)))};
+        },
+        -1);
+    Peak best{1, kInfinity};
+    for (const LimitedPeak& peak : peaks)
+        if (std::exp(peak.excess) > best.value) best = {std::exp(peak.excess), peak.omega};
+    return best;
+}
+
+/// 20 log10 of max |W/(1 + W)|, W = det(I + P C) - 1: 1/(1 + W) is the determinant of S.
+double log_modulus(const PlantResponses& plants, const std::vector<IdealPid>& controllers) {
+    const auto gains = parallel(controllers);
+    double most = -kInfinity;
+    const auto peaks = local_peaks(
+        plants.grid(),
+        [&](double omega, std::vector<double>& excess) {
+            excess = {std::log(std::abs(1.0 - sensitivity(plants, gains, omega).determinant()))};
+        },
+        -2);
+    for (const LimitedPeak& peak : peaks) most = std::max(most, peak.excess);
+    return 20 * most / std::numbers::ln10;
+}
+
+bool stable_with(const PlantMatrix& plants, const std::vector<IdealPid>& controllers, unsigned closed) {
+    const auto diagram = diagram_of(plants, controllers, closed);
+    if (!diagram) return false;
+    return count_unstable_poles(diagram->blocks).stable();
+}
+
+unsigned all_loops(const PlantMatrix& plants) { return (1u << plants.size()) - 1; }
+
+/// Settings in logarithms, with the signs and filters of a start.
+class Settings {
+public:
+    explicit Settings(std::vector<IdealPid> start) : start_(std::move(start)) {}
+
+    VectorXd of_start() const {
+        VectorXd x(per_loop() * Index(start_.size()));
+        for (std::size_t i = 0; i < start_.size(); ++i) {
+            const Index at = per_loop() * Index(i);
+            x[at] = std::log(std::abs(start_[i].Kp));
+            x[at + 1] = std::log(start_[i].Ti);
+            if (per_loop() > 2) x[at + 2] = std::log(start_[i].Td);
+        }
+        return x;
+    }
+    std::vector<IdealPid> at(const VectorXd& x) const {
+        std::vector<IdealPid> out(start_);
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const Index at = per_loop() * Index(i);
+            out[i].Kp = std::copysign(std::exp(x[at]), start_[i].Kp);
+            out[i].Ti = std::exp(x[at + 1]);
+            if (per_loop() < 3) continue;
+            out[i].Td = std::exp(x[at + 2]);
+            out[i].filter.Tf = kTf_over_Td * out[i].Td;
+        }
+        return out;
+    }
+
+private:
+    Index per_loop() const { return start_.front().Td > 0 ? 3 : 2; }
+    std::vector<IdealPid> start_;
+};
+
+class InteractionSearch {
+public:
+    InteractionSearch(const PlantMatrix& plants, const InteractionDesign& design, const std::vector<IdealPid>& start,
+                      const RunControl& control)
+        : plants_(plants),
+          responses_(plants, grid_of(plants, kPerDecade)),
+          design_(design),
+          settings_(start),
+          control_(control) {}
+
+    LimitedResult run() const {
+        LimitedProblem problem;
+        problem.log_cost = [&](const VectorXd& x) { return log_cost(settings_.at(x)); };
+        problem.peaks = [&](const VectorXd& x) {
+            const auto gains = parallel(settings_.at(x));
+            return local_peaks(
+                responses_.grid(),
+                [&](double omega, std::vector<double>& excess) { excess = {excess_at(gains, omega)}; }, kLeastPeak);
+        };
+        problem.excess_at = [&](const VectorXd& x, int, double omega) {
+            return excess_at(parallel(settings_.at(x)), omega);
+        };
+        const VectorXd start = settings_.of_start();
+        problem.low = start.array() - kMostMove;
+        problem.high = start.array() + kMostMove;
+        return search_within_limits(problem, start, {.stop = control_.stop});
+    }
+
+    std::vector<IdealPid> controllers(const VectorXd& x) const { return settings_.at(x); }
+
+private:
+    double excess_at(const std::vector<ParallelPid>& gains, double omega) const {
+        return std::log(structured_value(sensitivity(responses_, gains, omega)) / design_.mu);
+    }
+
+    double log_cost(const std::vector<IdealPid>& controllers) const {
+        for (unsigned closed = all_loops(plants_); closed > 0; --closed)
+            if (!stable_with(plants_, controllers, closed)) return kInfinity;
+        const auto diagram = diagram_of(plants_, controllers, all_loops(plants_));
+        double sum = 0;
+        for (const int load : diagram->u) sum += weighted_IAE(diagram->blocks, load, diagram->y);
+        return std::log(sum);
+    }
+
+    double weighted_IAE(const BlockDiagram& blocks, int load, const std::vector<int>& outputs) const {
+        double sum = 0;
+        const std::vector<double> IAE = quick_IAEs(blocks, load, outputs);
+        for (std::size_t i = 0; i < IAE.size(); ++i) sum += (design_.weight.empty() ? 1 : design_.weight[i]) * IAE[i];
+        return sum;
+    }
+
+    const PlantMatrix& plants_;
+    PlantResponses responses_;
+    const InteractionDesign& design_;
+    Settings settings_;
+    const RunControl& control_;
+};
+
+std::vector<IdealPid> with_kind(std::vector<IdealPid> controllers, bool derivative) {
+    if (!derivative) return controllers;
+    for (IdealPid& one : controllers) {
+        one.Td = one.Ti / 8;
+        one.filter = {FilterType::measurement_second_order, kTf_over_Td * one.Td};
+    }
+    return controllers;
+}
+
+/// Weaker and weaker until mu holds; empty: never.
+std::optional<std::vector<IdealPid>> detuned(const PlantMatrix& plants, std::vector<IdealPid> controllers, double mu) {
+    const auto at_full = controllers;
+    const PlantResponses responses(plants, grid_of(plants, kPerDecade));
+    for (const double weaker : kWeaker) {
+        for (std::size_t i = 0; i < controllers.size(); ++i) {
+            controllers[i].Kp = weaker * at_full[i].Kp;
+            controllers[i].Ti = at_full[i].Ti / std::sqrt(weaker);
+        }
+        if (!stable_with(plants, controllers, all_loops(plants))) continue;
+        if (mu_peak(responses, controllers).value <= mu) return controllers;
+    }
+    return std::nullopt;
+}
+
+/// BLT as it is and detuned, and with one loop quick and the others slow: the optimum has several valleys.
+std::vector<std::vector<IdealPid>> starts_of(const std::vector<IdealPid>& first) {
+    std::vector<std::vector<IdealPid>> out{first};
+    for (std::size_t quick = 0; quick < first.size(); ++quick) {
+        auto start = first;
+        for (std::size_t i = 0; i < start.size(); ++i) {
+            const double factor = i == quick ? kFaster : 1 / kFaster;
+            start[i].Kp *= std::sqrt(factor);
+            start[i].Ti /= factor;
+        }
+        out.push_back(std::move(start));
+    }
+    return out;
+}
+
+/// The method robust for each loop alone.
+Expected<std::vector<IdealPid>> single_settings(const PlantMatrix& plants, double Ms, const RunControl& control) {
+    std::vector<IdealPid> out;
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+        auto settings = robust_settings(*plants[i][i], {.Ms = Ms, .Mt = Ms}, control);
+        if (!settings) return Error{settings.error().kind, "plant/" + std::to_string(i), settings.error().message};
+        out.push_back(*settings);
+    }
+    return out;
+}
+
+std::optional<Error> without_diagonal(const PlantMatrix& plants) {
+    for (std::size_t i = 0; i < plants.size(); ++i)
+        if (!plants[i][i])
+            return Error{ErrorKind::invalid_argument, "pairing",
+                         "The pairing gives output " + std::to_string(i + 1) +
+                             " an input that does not move it. Choose another pairing, or leave it out: the best one "
+                             "is then chosen."};
+    return std::nullopt;
+}
+
+}  // namespace
+
+Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const std::vector<IdealPid>& controllers) {
+    if (auto error = without_diagonal(plants)) return *error;
+    const auto n = Index(plants.size());
+    const auto diagram = diagram_of(plants, controllers, all_loops(plants));
+    if (!diagram) return diagram.error();
+    InteractionFigures out;
+    for (unsigned closed = 1; closed <= all_loops(plants); ++closed) {
+        if (stable_with(plants, controllers, closed)) continue;
+        std::vector<int> loops;
+        for (int i = 0; i < int(n); ++i)
+            if (((closed >> i) & 1u) != 0) loops.push_back(i);
+        out.unstable_subsets.push_back(std::move(loops));
+    }
+    for (unsigned i = 0; i < plants.size(); ++i)
+        out.may_open.push_back(stable_with(plants, controllers, all_loops(plants) & ~(1u << i)));
+    out.stable = stable_with(plants, controllers, all_loops(plants));
+    if (!out.stable) return out;
+    out.IAE_setpoint = out.IAE_load = Table(std::size_t(n), std::vector<double>(std::size_t(n)));
+    for (Index i = 0; i < n; ++i) {
+        const auto k = std::size_t(i);
+        const DiagramLoop closed(diagram->blocks, diagram->u[k]);
+        out.Ms_others_closed.push_back(find_peaks(closed, make_peak_grid(closed)).S.value);
+        const auto own = Loop::make(*plants[k][k], to_parallel(controllers[k]));
+        const auto alone = stable_peaks(own);
+        out.Ms_alone.push_back(alone ? alone->S.value : kInfinity);
+        for (Index j = 0; j < n; ++j) {
+            const auto m = std::size_t(j);
+            const auto load = step_figures(diagram->blocks, diagram->u[m], diagram->y[k], diagram->u[k], 0);
+            const auto moved =
+                step_figures(diagram->blocks, diagram->r[m], diagram->y[k], diagram->u[k], i == j ? 1 : 0);
+            if (!load) return load.error();
+            if (!moved) return moved.error();
+            out.IAE_load[m][k] = load->IAE;
+            out.IAE_setpoint[m][k] = moved->IAE;
+        }
+    }
+    const PlantResponses responses(plants, grid_of(plants, kPerDecadeJudged));
+    const Peak peak = mu_peak(responses, controllers);
+    out.mu = peak.value;
+    out.omega_mu = peak.omega;
+    out.log_modulus = log_modulus(responses, controllers);
+    return out;
+}
+
+Expected<BltSettings> blt(const PlantMatrix& plants) {
+    if (auto error = without_diagonal(plants)) return *error;
+    std::vector<UltimatePoint> points;
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+        const auto point = ultimate_point(*plants[i][i]);
+        if (!point)
+            return Error{ErrorKind::numerical_failure, "plant/" + std::to_string(i),
+                         "Plant " + std::to_string(i + 1) +
+                             " of the diagonal has no ultimate gain: without dead time "
+                             "and with less than three lags no gain makes it oscillate."};
+        points.push_back(*point);
+    }
+    const auto at = [&](double F) {
+        std::vector<IdealPid> out;
+        for (const UltimatePoint& point : points)
+            out.push_back({.Kp = point.Ku / (kUltimateOverKp * F), .Ti = point.Pu * F / kPeriodOverTi});
+        return out;
+    };
+    // The modulus falls as F grows; below the least stable F it says nothing.
+    const PlantResponses responses(plants, grid_of(plants, kPerDecade));
+    const double wanted = kDecibels * double(plants.size());
+    double low = kLeastF, high = kMostF;
+    for (int i = 0; i < 60; ++i) {
+        const double F = std::sqrt(low * high);
+        const bool enough = stable_with(plants, at(F), all_loops(plants)) && log_modulus(responses, at(F)) < wanted;
+        (enough ? high : low) = F;
+    }
+    return BltSettings{at(high), high};
+}
+
+Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const InteractionDesign& design,
+                                               const RunControl& control) {
+    const auto gains = analyse_gains(plants);
+    if (!gains) return gains.error();
+    if (auto error = without_diagonal(plants)) return *error;
+    const auto luyben = blt(plants);
+    InteractionResult out;
+    out.blt = luyben ? OrReason<BltSettings>(*luyben) : OrReason<BltSettings>({}, luyben.error().message);
+    const auto single =
+        luyben ? Expected<std::vector<IdealPid>>(luyben->controllers) : single_settings(plants, design.mu, control);
+    if (!single) return single.error();
+    double least = kInfinity;
+    for (const auto& start : starts_of(*single)) {
+        const auto first = detuned(plants, with_kind(start, design.derivative), kStartAbove * design.mu);
+        if (!first) continue;
+        const InteractionSearch search(plants, design, *first, control);
+        const LimitedResult found = search.run();
+        out.partial = out.partial || found.stopped;
+        if (found.excess <= limits::kMaxRelativeExcessFound && found.log_cost < least) {
+            least = found.log_cost;
+            out.controllers = search.controllers(found.x);
+        }
+        if (found.stopped) break;
+    }
+    if (out.controllers.empty() && out.partial)
+        return Error{ErrorKind::cancelled, "", "The search was stopped before it found settings."};
+    if (out.controllers.empty())
+        return Error{ErrorKind::no_feasible_controller, "limit/mu",
+                     "No settings were found that keep mu within its limit with every loop stable; allow a larger mu, "
+                     "or another pairing."};
+    if (const auto weaker = detuned(plants, *single, design.mu)) out.detuned = *weaker;
+    auto figures = judge_interaction(plants, out.controllers);
+    if (!figures) return figures.error();
+    out.figures = std::move(*figures);
+    return out;
+}
+
+}  // namespace tunewright::structure

@@ -1,0 +1,53 @@
+// The least cost of a few settings under limits on peaks over frequency: settings of loops that are closed together.
+//
+// Sequential quadratic programming (numerics/optimise/sqp.h) over the logarithms of the settings. The cost's gradient
+// is a difference; that of a peak is the derivative of the function at the peak's frequency, because the peak is a
+// maximum over frequency (Danskin 1967).
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+#include <stop_token>
+#include <vector>
+
+namespace tunewright::structure {
+
+/// A local maximum over frequency of a function with a limit.
+struct LimitedPeak {
+    int function = 0;
+    double omega = 0;
+    double excess = 0;  ///< ln of the value over the limit
+};
+
+struct LimitedProblem {
+    /// ln of the cost at x; infinite where the loops are not stable.
+    std::function<double(const Eigen::VectorXd& x)> log_cost;
+    /// Local maxima of all functions at x, those near their limits at least; the cost is not asked for where one of
+    /// them exceeds its limit by far.
+    std::function<std::vector<LimitedPeak>(const Eigen::VectorXd& x)> peaks;
+    /// ln of one function over its limit at one frequency.
+    std::function<double(const Eigen::VectorXd& x, int function, double omega)> excess_at;
+    Eigen::VectorXd low, high;  ///< bounds of x
+};
+
+struct LimitedResult {
+    Eigen::VectorXd x;
+    double log_cost = std::numeric_limits<double>::infinity();
+    double excess = std::numeric_limits<double>::infinity();  ///< the largest; <= 0: all limits hold
+    bool stopped = false;
+};
+
+struct LimitedOptions {
+    int max_iterations = 40;
+    double cost_tolerance = 1e-5;
+    double difference = 2e-3;  ///< of x, for the gradient of the cost
+    std::stop_token stop = {};
+};
+
+/// `start` must be stable; it need not keep the limits. The result keeps them to 1e-6 of ln unless its `excess` says
+/// otherwise.
+LimitedResult search_within_limits(const LimitedProblem& problem, const Eigen::VectorXd& start,
+                                   const LimitedOptions& options);
+
+}  // namespace tunewright::structure

@@ -1,0 +1,35 @@
+#include "engine/structure/loop_design.h"
+
+#include "engine/tuning/robust/robust.h"
+
+namespace tunewright::structure {
+
+Expected<IdealPid> robust_settings(const LinearPlant& plant, const LoopDesign& design, const RunControl& control) {
+    const TuningProblem problem{.plant = Plant(factors_of(plant)), .linear = plant, .dead_time_std = {}};
+    auto tuned = tune_robust(problem, {.controller = design.controller, .Ms = design.Ms, .Mt = design.Mt},
+                             {control.stop, nullptr, control.now_ms});
+    if (!tuned) return tuned.error();
+    return tuned->controller;
+}
+
+Zpk factors_of(const LinearPlant& plant) {
+    Zpk out{.K = plant.gain(),
+            .zeros = {plant.zeros().begin(), plant.zeros().end()},
+            .poles = {plant.poles().begin(), plant.poles().end()},
+            .L = plant.dead_time()};
+    for (int i = 0; i < plant.integrators(); ++i) out.poles.emplace_back(0);
+    for (int i = 0; i > plant.integrators(); --i) out.zeros.emplace_back(0);
+    return out;
+}
+
+Zpk factors_of(const LinearPlant& first, const LinearPlant& second) {
+    Zpk out = factors_of(first);
+    const Zpk other = factors_of(second);
+    out.K *= other.K;
+    out.L += other.L;
+    out.zeros.insert(out.zeros.end(), other.zeros.begin(), other.zeros.end());
+    out.poles.insert(out.poles.end(), other.poles.begin(), other.poles.end());
+    return out;
+}
+
+}  // namespace tunewright::structure

@@ -1,0 +1,293 @@
+#include "engine/structure/predictor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "engine/blocks/diagram_loop.h"
+#include "engine/loop/peaks.h"
+#include "engine/number_text.h"
+#include "engine/structure/local_peaks.h"
+#include "engine/structure/loop_design.h"
+
+namespace tunewright::structure {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kQuickest = 0.02, kSlowest = 50;  // of L + |T|: lambda and Tf
+constexpr int kHalvings = 60;
+constexpr int kPerDecade = 400;             // frequencies at which |S| = |T| is looked for
+constexpr double kLow = 1e-3, kHigh = 1e3;  // of 1/L
+constexpr double kMostMs = 1.99;
+constexpr double kBesideZero = 1e-5;  // of 1/time scale: the controller's own integrator is left of it
+
+using OverFrequency = std::function<Complex(double)>;
+
+Rational product(const Rational& a, const Rational& b) {
+    const auto times = [](const std::vector<double>& x, const std::vector<double>& y) {
+        std::vector<double> out(x.size() + y.size() - 1, 0.0);
+        for (std::size_t i = 0; i < x.size(); ++i)
+            for (std::size_t k = 0; k < y.size(); ++k) out[i + k] += x[i] * y[k];
+        return out;
+    };
+    return {times(a.num, b.num), times(a.den, b.den)};
+}
+
+Expected<LinearPlant> block(const Rational& r, double gain = 1, double L = 0) {
+    TransferFunction plant{.num = r.num, .den = r.den, .L = L};
+    for (double& c : plant.num) c *= gain;
+    return LinearPlant::make(Plant(plant));
+}
+
+Rational fraction_of(const PredictorModel& m) {
+    return m.integrating ? Rational{{m.K}, {1, 0}} : Rational{{m.K}, {m.T, 1}};
+}
+
+/// beta of the filtered predictor.
+double zero_of(const PredictorModel& m, double Tf) {
+    if (m.integrating) return 2 * Tf + m.L;
+    const double share = 1 - Tf / m.T;
+    return m.T * (1 - share * share * std::exp(-m.L / m.T));
+}
+
+/// T of the design without the dead time's model error.
+OverFrequency closed_loop(const PredictorModel& m, PredictorKind kind, double knob) {
+    return [=, beta = zero_of(m, knob)](double omega) {
+        const Complex s(0, omega), late = std::exp(-m.L * s);
+        if (kind != PredictorKind::filtered_smith) return late / (knob * s + 1.0);
+        return late * (beta * s + 1.0) / ((knob * s + 1.0) * (knob * s + 1.0));
+    };
+}
+
+double Ms_of(const PredictorModel& m, const OverFrequency& T) {
+    double most = 0;
+    for (const LimitedPeak& peak : local_peaks(
+             logarithmic(kLow / m.L, kHigh / m.L, 60),
+             [&](double omega, std::vector<double>&excess) { excess = {std::log(std::abs(1.0 - T(omega)))}; }, -0.5))
+        most = std::max(most, std::exp(peak.excess));
+    return most;
+}
+
+struct Window {
+    double up = kInfinity, down = kInfinity;
+};
+
+/// The dead-time errors at which the loop is just not stable: exp(-j omega d) = -S/T where |S| = |T|; the smallest on
+/// either side.
+Window window_of(const OverFrequency& T, const std::vector<double>& grid) {
+    Window out;
+    const auto difference = [&](double omega) {
+        const Complex t = T(omega);
+        return std::abs(1.0 - t) - std::abs(t);
+    };
+    double before = difference(grid.front());
+    for (std::size_t i = 1; i < grid.size(); ++i) {
+        const double here = difference(grid[i]);
+        if ((before < 0) != (here < 0)) {
+            double low = grid[i - 1], high = grid[i];
+            for (int k = 0; k < kHalvings; ++k) {
+                const double middle = std::sqrt(low * high);
+                ((difference(middle) < 0) == (before < 0) ? low : high) = middle;
+            }
+            const Complex t = T(low);
+            double later = -std::arg(-(1.0 - t) / t);
+            if (later < 0) later += 2 * std::numbers::pi;
+            out.up = std::min(out.up, later / low);
+            out.down = std::min(out.down, (2 * std::numbers::pi - later) / low);
+        }
+        before = here;
+    }
+    return out;
+}
+
+std::vector<double> fine_grid(double L) { return logarithmic(kLow / L, kHigh / L, kPerDecade); }
+
+struct Diagram {
+    BlockDiagram blocks;
+    int y = 0, u = 0, v = 0, plant_input = 0;  ///< the model sees u, the plant also the load
+};
+
+/// `plant` null: the controller by itself.
+Expected<Diagram> diagram_of(const LinearPlant* plant, const PredictorController& controller) {
+    const PredictorModel& m = controller.model;
+    Diagram out;
+    out.y = out.blocks.add_signal();
+    out.u = out.blocks.add_signal();
+    out.v = out.blocks.add_signal();
+    const int past = out.blocks.add_signal();  // u less its filtered past
+    const auto C = block(controller.C), F = block(controller.F, -1), late = block(controller.F, -1, m.L),
+               Gm = block(fraction_of(m), -1);
+    for (const auto* part : {&C, &F, &late, &Gm})
+        if (!*part) return part->error();
+    out.blocks.add(out.v, out.u, *C);
+    out.blocks.add(out.u, past, 1);
+    out.blocks.add(out.u, past, *late);
+    out.blocks.add(past, out.v, *Gm, m.integrating || m.T < 0);
+    if (plant == nullptr) return out;
+    out.blocks.add(out.y, out.v, *F);
+    out.plant_input = out.blocks.add_signal();
+    out.blocks.add(out.u, out.plant_input, 1);
+    out.blocks.add(out.plant_input, out.y, *plant);
+    return out;
+}
+
+/// With lambda, Tf or the predictive PI's lag as the knob.
+PredictorController controller_of(const PredictorModel& m, PredictorKind kind, double knob) {
+    PredictorController out;
+    out.model = m;
+    out.F = {{1}, {1}};
+    const bool filtered = kind == PredictorKind::filtered_smith;
+    out.lambda = knob;
+    if (m.integrating) {
+        // s^2 + Kp K s + Ki K with both roots at -1/lambda.
+        out.C = {{2 / (m.K * knob), 1 / (m.K * knob * knob)}, {1, 0}};
+    } else if (m.T < 0) {
+        out.C = {{(2 * m.T / knob - 1) / m.K, m.T / (m.K * knob * knob)}, {1, 0}};
+    } else {
+        out.C = {{m.T, 1}, {m.K * knob, 0}};
+    }
+    if (!filtered) return out;
+    out.Tf = knob;
+    out.beta = zero_of(m, knob);
+    const Rational wanted{{out.beta, 1}, {knob * knob, 2 * knob, 1}};
+    if (m.integrating || m.T < 0) {
+        const double a = out.C.num[0] / out.C.num[1];
+        out.F = product(wanted, {{knob * knob, 2 * knob, 1}, {a, 1}});
+    } else {
+        out.F = product(wanted, {{knob, 1}, {1}});
+    }
+    return out;
+}
+
+std::optional<Error> refused(const PredictorModel& m, const PredictorDesign& design) {
+    if (!(m.L > 0))
+        return Error{ErrorKind::invalid_argument, "model/L",
+                     "L is " + text(m.L) + "; a predictor needs a dead time above 0."};
+    if (m.K == 0 || !std::isfinite(m.K) || !std::isfinite(m.T) || (!m.integrating && m.T == 0))
+        return Error{ErrorKind::invalid_argument, "model", "K and T of the model must be finite numbers other than 0."};
+    if (!(design.Ms > 1 && design.Ms <= kMostMs))
+        return Error{ErrorKind::invalid_argument, "Ms",
+                     "Ms is " + text(design.Ms) + "; it must be above 1 and at most " + text(kMostMs) +
+                         ": no Smith predictor has a peak of 2."};
+    if ((m.integrating || m.T < 0) && design.kind != PredictorKind::filtered_smith)
+        return Error{ErrorKind::unsupported, "kind",
+                     "On an integrating or unstable plant a predictor without filter leaves a lasting error after a "
+                     "load, or is not stable. Use filtered_smith."};
+    return std::nullopt;
+}
+
+/// The smallest knob that keeps both limits: the peak falls and the window grows with it.
+double smallest_knob(const PredictorModel& m, const PredictorDesign& design, bool& by_window) {
+    const double scale = m.L + (m.integrating ? 0 : std::abs(m.T));
+    const auto grid = fine_grid(m.L);
+    const auto holds = [&](double knob, bool window) {
+        const auto T = closed_loop(m, design.kind, knob);
+        if (!window) return Ms_of(m, T) <= design.Ms;
+        const Window found = window_of(T, grid);
+        return std::min(found.up, found.down) >= *design.dead_time_error * m.L;
+    };
+    const auto smallest = [&](bool window) {
+        double low = kQuickest * scale, high = kSlowest * scale;
+        for (int i = 0; i < kHalvings && high / low > 1 + 1e-9; ++i) {
+            const double middle = std::sqrt(low * high);
+            (holds(middle, window) ? high : low) = middle;
+        }
+        return high;
+    };
+    const double by_Ms = smallest(false);
+    if (!design.dead_time_error) return by_Ms;
+    const double by_error = smallest(true);
+    by_window = by_error > by_Ms;
+    return std::max(by_Ms, by_error);
+}
+
+/// The robust PID under the same limit on Ms.
+void compare_with_pid(const LinearPlant& plant, const PredictorDesign& design, const RunControl& control,
+                      PredictorResult& out) {
+    const auto settings = robust_settings(
+        plant, {.controller = ControllerKind::PID, .Ms = design.Ms, .Mt = std::max(design.Ms, limits::kDefaultMt)},
+        control);
+    if (!settings) {
+        out.pid_IAE = no_figure(settings.error().message);
+        return;
+    }
+    out.pid = *settings;
+    BlockDiagram loop;
+    const int y = loop.add_signal();
+    const auto pid = add_pid(loop, to_parallel(*settings), y);
+    if (!pid) return;
+    loop.add(pid->output, y, plant);
+    if (const auto figures = step_figures(loop, pid->output, y, pid->output, 0)) out.pid_IAE = figures->IAE;
+}
+
+/// Figures after unit steps of load and set point. On an unstable model nothing is simulated: the model cancels its own
+/// past only up to rounding, and what is left grows without bound.
+std::optional<Error> add_responses(const Diagram& diagram, const PredictorModel& model, PredictorFigures& out) {
+    if (!model.integrating && model.T < 0) {
+        out.load = out.setpoint = OrReason<StepFigures>({}, "Responses are not simulated on an unstable model.");
+        return std::nullopt;
+    }
+    const auto load = step_figures(diagram.blocks, diagram.plant_input, diagram.y, diagram.u, 0);
+    if (!load) return load.error();
+    out.load = *load;
+    const auto setpoint = step_figures(diagram.blocks, diagram.v, diagram.y, diagram.u, 1);
+    if (!setpoint) return setpoint.error();
+    out.setpoint = *setpoint;
+    return std::nullopt;
+}
+
+}  // namespace
+
+Expected<PredictorFigures> judge_predictor(const LinearPlant& plant, const PredictorController& controller) {
+    const auto diagram = diagram_of(&plant, controller);
+    if (!diagram) return diagram.error();
+    const auto alone = diagram_of(nullptr, controller);
+    PredictorFigures out;
+    out.controller_unstable_poles = count_unstable_poles(alone->blocks, kBesideZero).unstable_poles;
+    out.stable = count_unstable_poles(diagram->blocks).stable();
+    out.dead_time_up = out.dead_time_down = no_figure("The loop is not stable.");
+    if (!out.stable) return out;
+    const DiagramLoop at_plant(diagram->blocks, diagram->y);
+    const Peaks peaks = find_peaks(at_plant, make_peak_grid(at_plant));
+    out.Ms = peaks.S.value;
+    out.Mt = peaks.T.value;
+    const double L = std::max(plant.dead_time(), 1e-6 * plant.time_scale());
+    const Window window = window_of([&](double omega) { return at_plant.at(omega).T; }, fine_grid(L));
+    out.dead_time_up =
+        std::isfinite(window.up) ? Figure(window.up) : no_figure("No later dead time makes it unstable.");
+    out.dead_time_down = std::min(window.down, plant.dead_time());
+    if (auto error = add_responses(*diagram, controller.model, out)) return *error;
+    return out;
+}
+
+std::optional<PredictorModel> model_of(const LinearPlant& plant) {
+    if (!plant.zeros().empty()) return std::nullopt;
+    const bool integrating = plant.integrators() == 1 && plant.poles().empty();
+    if (!integrating && (plant.integrators() != 0 || plant.poles().size() != 1)) return std::nullopt;
+    return PredictorModel{.K = plant.low_frequency_gain(),
+                          .T = integrating ? 1 : -1 / plant.poles().front().real(),
+                          .L = plant.dead_time(),
+                          .integrating = integrating};
+}
+
+Expected<PredictorResult> design_predictor(const PredictorModel& model, const LinearPlant& plant,
+                                           const PredictorDesign& design, const RunControl& control) {
+    if (auto error = refused(model, design)) return *error;
+    PredictorResult out;
+    const bool fixed = design.kind == PredictorKind::predictive_pi;
+    const double knob = fixed ? model.T : smallest_knob(model, design, out.limited_by_dead_time);
+    out.controller = controller_of(model, design.kind, knob);
+    auto figures = judge_predictor(plant, out.controller);
+    if (!figures) return figures.error();
+    out.figures = std::move(*figures);
+    compare_with_pid(plant, design, control, out);
+    return out;
+}
+
+}  // namespace tunewright::structure

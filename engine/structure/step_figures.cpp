@@ -1,0 +1,52 @@
+#include "engine/structure/step_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/blocks/diagram_response.h"
+#include "engine/simulation/linear/indices.h"
+
+namespace tunewright::structure {
+namespace {
+
+constexpr double kQuickTolerance = 3e-5, kQuickSettled = 1e-4;
+
+std::vector<double> quick_IAEs_of(const BlockDiagram& diagram, int enters_at, const std::vector<int>& outputs,
+                                  double target) {
+    const auto response = DiagramResponse::of(
+        diagram, {{enters_at, 1}}, {.tolerance = kQuickTolerance, .settled = kQuickSettled, .max_steps = 20000});
+    std::vector<double> out(outputs.size(), std::numeric_limits<double>::infinity());
+    if (!response || !response->settles()) return out;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const StepResponse nodes = response->pair(outputs[i], outputs[i], target);
+        out[i] = integral_of_absolute_error(nodes.nodes, target, nodes.error_integral_final);
+    }
+    return out;
+}
+
+}  // namespace
+
+Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target) {
+    const auto response = DiagramResponse::of(diagram, {{enters_at, 1}}, {});
+    if (!response) return response.error();
+    const StepResponse nodes = response->pair(y, u, target);
+    const ErrorIntegrals integrals = error_integrals(nodes.nodes, target, nodes.error_integral_final);
+    const Extremes extremes = extremes_of_y(nodes.nodes);
+    StepFigures figures{.IAE = integrals.IAE, .ISE = integrals.ISE, .TV = total_variation(nodes.nodes)};
+    figures.IE = nodes.error_integral_final.value_or(nodes.nodes.back().error_integral);
+    figures.peak = std::abs(extremes.min) > std::abs(extremes.max) ? extremes.min : extremes.max;
+    if (target != 0) figures.overshoot = std::max(0.0, (target > 0 ? extremes.max : extremes.min) / target - 1);
+    figures.settles = nodes.settles;
+    return figures;
+}
+
+double quick_IAE(const BlockDiagram& diagram, int enters_at, int y, double target) {
+    return quick_IAEs_of(diagram, enters_at, {y}, target).front();
+}
+
+std::vector<double> quick_IAEs(const BlockDiagram& diagram, int enters_at, const std::vector<int>& outputs) {
+    return quick_IAEs_of(diagram, enters_at, outputs, 0);
+}
+
+}  // namespace tunewright::structure

@@ -1,0 +1,31 @@
+// The figures of one response of loops that are closed together.
+#pragma once
+
+#include <vector>
+
+#include "engine/expected.h"
+
+namespace tunewright {
+class BlockDiagram;
+}
+
+namespace tunewright::structure {
+
+/// Of a unit step that enters at one signal; TV of what the controller adds at another.
+struct StepFigures {
+    double IAE = 0, ISE = 0, TV = 0;
+    double IE = 0;         ///< integral of the error
+    double peak = 0;       ///< of y, the farther of both sides
+    double overshoot = 0;  ///< of y beyond a target that is not 0, as a share of it
+    bool settles = true;
+};
+
+/// `target`: what y should become. Errors: those of DiagramResponse::of().
+Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target);
+
+/// The IAE alone, at a lower accuracy: 1e-4, for a search.
+double quick_IAE(const BlockDiagram& diagram, int enters_at, int y, double target);
+/// The same of several outputs that should become 0.
+std::vector<double> quick_IAEs(const BlockDiagram& diagram, int enters_at, const std::vector<int>& outputs);
+
+}  // namespace tunewright::structure

@@ -1,0 +1,145 @@
+// Several loops in one diagram, against the single loop and against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <string>
+
+#include "engine/blocks/diagram_loop.h"
+#include "engine/blocks/diagram_response.h"
+#include "engine/loop/loop.h"
+#include "engine/loop/peaks.h"
+#include "engine/structure/cascade_diagram.h"
+#include "engine/structure/step_figures.h"
+#include "tests/engine/structure/plants.h"
+
+namespace tunewright {
+namespace {
+
+using structure::first_order;
+using structure::pi;
+using structure::transfer;
+
+TEST(BlockDiagram, OneLoopIsTheLoopItself) {
+    const LinearPlant plant = transfer({-0.6, 1}, {12, 8, 1}, 3);
+    const ParallelPid pid =
+        to_parallel(IdealPid{.Kp = 0.8, .Ti = 6, .Td = 1.2, .filter = {FilterType::measurement_second_order, 0.2}});
+    BlockDiagram diagram;
+    const int y = diagram.add_signal();
+    const auto signals = add_pid(diagram, pid, y);
+    ASSERT_TRUE(signals);
+    diagram.add(signals->output, y, plant);
+    const DiagramLoop loop(diagram, signals->output);
+    const auto own = Loop::make(plant, pid);
+    ASSERT_TRUE(own);
+    for (const double omega : {1e-3, 0.02, 0.17, 0.9, 7.0, 80.0}) {
+        EXPECT_LT(std::abs(loop.at(omega).S - own->at(omega).S), 1e-12) << omega;
+        EXPECT_LT(std::abs(loop.at(omega).T - own->at(omega).T), 1e-12) << omega;
+    }
+}
+
+TEST(BlockDiagram, TheLoopAtTheValveIsTheProductOfBothLoopsOfACascade) {
+    const structure::CascadePlants plants{first_order(1, 5, 2), first_order(1.2, 60, 20)};
+    const IdealPid inner = pi(1.25, 5), outer = pi(1.04, 60);
+    const auto all = structure::cascade_diagram(plants, inner, &outer),
+               alone = structure::cascade_diagram(plants, inner, nullptr);
+    ASSERT_TRUE(all && alone);
+    for (const double omega : {0.003, 0.04, 0.3, 2.0}) {
+        const std::complex<double> valve = DiagramLoop(all->diagram, all->valve).at(omega).S,
+                                   at_r2 = DiagramLoop(all->diagram, all->r2).at(omega).S,
+                                   own = DiagramLoop(alone->diagram, alone->valve).at(omega).S;
+        EXPECT_LT(std::abs(valve - own * at_r2), 1e-12) << omega;
+    }
+}
+
+TEST(BlockDiagram, TheOuterGainOfSeborgsCascadeIsUltimateWhereRouthSaysSo) {
+    // 8 s^3 + 46 s^2 + 31 s + 5 + 4 Kc: 46 x 31 = 8 (5 + 4 Kc) at Kc = 43.3125.
+    const structure::CascadePlants plants{transfer({1}, {1, 1}), transfer({1}, {8, 6, 1})};
+    for (const double Kc : {43.3124, 43.3126}) {
+        const IdealPid inner{.Kp = 4}, outer{.Kp = Kc};
+        const auto all = structure::cascade_diagram(plants, inner, &outer);
+        ASSERT_TRUE(all);
+        EXPECT_EQ(count_unstable_poles(all->diagram).unstable_poles, Kc > 43.3125 ? 2 : 0);
+        const auto pole = rightmost_pole(all->diagram);
+        ASSERT_TRUE(pole);
+        EXPECT_EQ(pole->real() > 0, Kc > 43.3125);
+        EXPECT_NEAR(std::abs(pole->imag()), std::sqrt(31.0 / 8), 1e-3);
+    }
+}
+
+/// The two methods agree on whether the loops are stable; both kinds must occur.
+void expect_agreement(int cases, const std::function<BlockDiagram(structure::RandomNumbers&)>& make) {
+    structure::RandomNumbers random(54);
+    int stable = 0;
+    for (int i = 0; i < cases; ++i) {
+        const BlockDiagram diagram = make(random);
+        const bool counted = count_unstable_poles(diagram).stable();
+        const auto pole = rightmost_pole(diagram);
+        ASSERT_TRUE(pole) << i;
+        EXPECT_EQ(counted, pole->real() < 0) << i << ": " << *pole;
+        stable += counted;
+    }
+    EXPECT_GT(stable, cases / 10);
+    EXPECT_LT(stable, cases - cases / 10);
+}
+
+TEST(DiagramStability, BothMethodsAgreeOnTwoHundredCascades) {
+    expect_agreement(200, [](structure::RandomNumbers& random) {
+        const double slow = random.log_uniform(1, 30);
+        const structure::CascadePlants plants{first_order(1, 1, random.log_uniform(0.05, 2)),
+                                              first_order(1, slow, slow * random.log_uniform(0.05, 1))};
+        const IdealPid inner = pi(random.log_uniform(0.1, 3), random.log_uniform(0.3, 3)),
+                       outer = pi(random.log_uniform(0.1, 5), slow * random.log_uniform(0.3, 2));
+        return structure::cascade_diagram(plants, inner, &outer)->diagram;
+    });
+}
+
+TEST(DiagramStability, BothMethodsAgreeOnTwoHundredPairsOfInteractingLoops) {
+    expect_agreement(200, [](structure::RandomNumbers& random) {
+        BlockDiagram diagram;
+        const int y[] = {diagram.add_signal(), diagram.add_signal()};
+        int u[2];
+        for (int i = 0; i < 2; ++i)
+            u[i] =
+                add_pid(diagram, to_parallel(pi(random.log_uniform(0.1, 4), random.log_uniform(0.3, 6))), y[i])->output;
+        for (int i = 0; i < 2; ++i)
+            for (int j = 0; j < 2; ++j)
+                diagram.add(u[j], y[i],
+                            first_order(i == j ? 1 : random.log_uniform(0.1, 1.5) * (i == 0 ? 1 : -1),
+                                        random.log_uniform(1, 8), random.log_uniform(0.1, 3)));
+        return diagram;
+    });
+}
+
+TEST(DiagramResponse, ALoopWithIntegralActionHasTheIntegralErrorOfItsTiOverKp) {
+    BlockDiagram diagram;
+    const int y = diagram.add_signal();
+    const auto signals = add_pid(diagram, to_parallel(pi(0.6, 9)), y);
+    diagram.add(signals->output, y, first_order(2, 10, 3));
+    const auto figures = structure::step_figures(diagram, signals->output, y, signals->output, 0);
+    ASSERT_TRUE(figures);
+    EXPECT_NEAR(figures->IE, -15, 1e-6);
+    EXPECT_TRUE(figures->settles);
+}
+
+TEST(DiagramResponse, APlantAloneRespondsAsItsClosedForm) {
+    BlockDiagram diagram;
+    const int u = diagram.add_signal(), y = diagram.add_signal();
+    diagram.add(u, y, first_order(2, 5, 1.5));
+    const auto response = DiagramResponse::of(diagram, {{u, 1}}, {.horizon = 20});
+    ASSERT_TRUE(response);
+    for (const ResponseNode& node : response->pair(y, u, 0).nodes)
+        EXPECT_NEAR(node.y, node.t <= 1.5 ? 0 : 2 * (1 - std::exp(-(node.t - 1.5) / 5)), 1e-9) << node.t;
+}
+
+TEST(BlockDiagram, ADerivativeWithoutFilterIsRefused) {
+    BlockDiagram diagram;
+    const int y = diagram.add_signal();
+    const auto signals = add_pid(diagram, to_parallel(IdealPid{.Kp = 1, .Ti = 5, .Td = 1}), y);
+    ASSERT_FALSE(signals);
+    EXPECT_EQ(signals.error().where, "controller");
+}
+
+}  // namespace
+}  // namespace tunewright

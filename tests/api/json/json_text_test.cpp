@@ -8,7 +8,7 @@
 #include "api/json/json.h"
 #include "api/json/utf8.h"
 #include "api/json/writer.h"
-#include "support.h"
+#include "tests/api/support.h"
 
 namespace tunewright::api {
 namespace {

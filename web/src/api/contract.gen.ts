@@ -1165,6 +1165,7 @@ export type components = {
       saturated_low: number;
       saturated_high: number;
       output_still: number;
+      longest_still: number;
       measurement_still: number;
       why_null?: {
         [key: string]: string;

@@ -51,7 +51,7 @@ Html work_list_of(const ReportInput& s) {
         const ReportInput own = with_units(s, loop.at("units").value());
         rows.push_back({std::to_string(rows.size() + 1), text_at(loop.at("tag")),
                         verdict_title(text_at(cause.at("verdict"))), text_at(cause.at("confidence")),
-                        action_title(text_at(loop.at("action").at("code"))),
+                        action_title(s.result.value(), text_at(loop.at("action").at("code")), rank.value()),
                         owner_title(text_at(loop.at("action").at("owner"))), effort_title(rank.at("effort").value()),
                         gain_of(own, rank), figure(rank.at("share"), 2)});
         if (money) rows.back().push_back(figure(rank.at("money")));

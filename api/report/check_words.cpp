@@ -58,6 +58,12 @@ std::string verdict_title(std::string_view verdict) { return word_for(kVerdicts,
 
 std::string action_title(std::string_view action) { return word_for(kActions, action); }
 
+std::string action_title(const Json& result, std::string_view action, const Json& rank) {
+    const Json after = rank.is_object() ? rank.value("after", Json()) : Json();
+    const std::string source = action == "find-source" ? tag_of_loop(result, after) : "";
+    return source.empty() ? action_title(action) : "correct " + source + " first";
+}
+
 std::string owner_title(std::string_view owner) { return owner == "nobody" ? "–" : std::string(owner); }
 
 std::string effort_title(const Json& effort) {

@@ -13,6 +13,8 @@ namespace tunewright::api {
 std::string verdict_title(std::string_view verdict);
 /// "repair the valve" for "repair-valve".
 std::string action_title(std::string_view action);
+/// The same of a loop of the answer; "correct FIC101 first" for one whose source is known by its `rank`.
+std::string action_title(const Json& result, std::string_view action, const Json& rank);
 /// Whose work it is; "–" for nobody.
 std::string owner_title(std::string_view owner);
 /// "work on the plant" for 3.

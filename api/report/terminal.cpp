@@ -353,7 +353,8 @@ std::string work_list(const Json& answer, const std::vector<std::size_t>& order)
         const Json cause = member_of(loop, "cause"), action = member_of(loop, "action");
         const Json rank = rank_of(answer.at("ranking"), order[place]);
         columns.row({std::to_string(place + 1), short_tag(loop), verdict_title(words(member_of(cause, "verdict"))),
-                     words(member_of(cause, "confidence")), action_title(words(member_of(action, "code"))),
+                     words(member_of(cause, "confidence")),
+                     action_title(answer, words(member_of(action, "code")), rank),
                      owner_title(words(member_of(action, "owner"))), shown_figure(member_of(rank, "gain"), 3),
                      percent_text(member_of(rank, "share")),
                      shown_figure(member_of(member_of(loop, "oscillation"), "period"), 3)});
@@ -376,6 +377,17 @@ std::string notes_of(const Json& answer) {
     std::string out;
     for (const Json& note : answer.value("notes", Json::array())) out += "Note: " + words(note) + "\n";
     return out.empty() ? "" : "\n" + out;
+}
+
+/// What was found on the records.
+std::string remarks_of(const Json& answer, const std::vector<std::size_t>& order) {
+    std::string out;
+    for (const std::size_t place : order) {
+        const Json& loop = answer.at("loops").at(place);
+        const std::string found = sentences(at(loop, "/quality/remarks"), "detail");
+        if (!found.empty()) out += words(member_of(loop, "tag")) + "\n" + found;
+    }
+    return out.empty() ? "" : "\nOn the records:\n" + out;
 }
 
 /// The strongest evidence of the first loops that need work, and what to do.
@@ -408,7 +420,7 @@ std::string check_text(std::string_view answer) try {
     if (!is_of_check(value)) return std::string(answer) + "\n";
     const std::vector<std::size_t> order = work_order(value);
     std::string out = check_summary(value) + "\n\n" + work_list(value, order) + groups_of(value) +
-                      reasons_of(value, order) + notes_of(value);
+                      reasons_of(value, order) + remarks_of(value, order) + notes_of(value);
     if (value.value("partial", false)) out += "\nThe check was stopped before all loops were checked.\n";
     return out;
 } catch (const Json::exception&) {

@@ -138,7 +138,8 @@ void write_changes(const BatchCheck& check, Writer& out) {
     out.begin_array();
     for (std::size_t i = 0; i < check.changes.size(); ++i) {
         out.begin_object();
-        out.key("loop").integer(static_cast<long long>(check.compared[i]));
+        out.key("loop").integer(static_cast<long long>(check.compared[i].loop));
+        out.key("tag").text(check.compared[i].tag);
         out.key("change");
         change_contract().write(check.changes[i], out);
         out.end_object();
@@ -150,9 +151,18 @@ Json changes_schema(SchemaBook& book) {
     return {{"type", "array"},
             {"items",
              {{"type", "object"},
-              {"properties", {{"loop", {{"type", "integer"}}}, {"change", change_contract().schema(book)}}},
-              {"required", {"loop", "change"}}}}};
+              {"properties",
+               {{"loop", {{"type", "integer"}}},
+                {"tag", {{"type", "string"}}},
+                {"change", change_contract().schema(book)}}},
+              {"required", {"loop", "tag", "change"}}}}};
 }
+
+}  // namespace
+
+namespace {
+
+Codec<std::vector<std::string>> tags() { return list_of(words()); }
 
 }  // namespace
 
@@ -186,8 +196,17 @@ const Description<BatchCheck>& batch_check_contract() {
             .field("changes", {}, write_changes, changes_schema,
                    "With before: what has changed in each loop since that batch, by tag.", {},
                    [](const B& check) { return check.compared.empty(); })
+            .field(
+                "only_now", {}, [](const B& check, Writer& out) { tags().write(check.only_now, out); }, tags().schema,
+                "With before: tags that the earlier batch has not.", {},
+                [](const B& check) { return check.only_now.empty(); })
+            .field(
+                "only_before", {}, [](const B& check, Writer& out) { tags().write(check.only_before, out); },
+                tags().schema, "With before: tags that only the earlier batch has.", {},
+                [](const B& check) { return check.only_before.empty(); })
             .field("failed", &B::failed, only_answered(integer(0, 1 << 30)), "Entries without an answer.")
-            .field("complete", &B::complete, only_answered(boolean()), "True: the batch has ended.");
+            .field("complete", &B::complete, only_answered(boolean()),
+                   "True: the batch has ended, and none of it was cancelled.");
         return d;
     }();
     return description;

@@ -27,7 +27,12 @@ struct BatchCheck {
     std::vector<std::string> loops;  ///< each as JSON, in the order of the batch
     check::PlantCheck plant;
     std::vector<check::Change> changes;  ///< of `compared`
-    std::vector<std::size_t> compared;   ///< places in loops
+    struct Compared {
+        std::size_t loop = 0;  ///< place in loops
+        std::string tag;
+    };
+    std::vector<Compared> compared;
+    std::vector<std::string> only_now, only_before;  ///< tags without a counterpart
     bool complete = false;
     int failed = 0;
 };

@@ -95,7 +95,8 @@ void explain_by_source(LoopCheck& check, const LoopCheck& source) {
     cause.confidence = Confidence::likely;
     cause.size = cause.jump = no_figure("Another loop makes the oscillation.");
     cause.why_open.clear();
-    std::erase_if(cause.evidence, [](const Evidence& one) { return one.code == kMovesWithSource; });
+    // What spoke for a cause of its own is overruled.
+    std::erase_if(cause.evidence, [](const Evidence& one) { return one.code != "regularity"; });
     cause.evidence.insert(cause.evidence.begin(),
                           {kMovesWithSource,
                            check.oscillation.periods.empty() ? 0 : check.oscillation.periods.front().period,

@@ -128,6 +128,31 @@ TEST(Check, ABatchIsJudgedAsOneRequest) {
     ASSERT_EQ(compared["changes"].size(), 2U);
     EXPECT_NEAR(compared["changes"][0]["change"]["variability_ratio"].get<double>(), 1, 1e-12);
     EXPECT_EQ(compared["changes"][0]["change"]["significant"], false);
+    EXPECT_EQ(compared["changes"][0]["tag"], judged["loops"][0]["tag"]);
+    EXPECT_FALSE(compared.contains("only_now") || compared.contains("only_before"));
+}
+
+PlantChecks with_loops(const std::vector<std::string>& tags) {
+    PlantChecks checks;
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+        const std::string result = Json{{"loops", Json::array({Json{{"tag", tags[i]}}})}}.dump();
+        checks.add({static_cast<std::int64_t>(i), "job", tags[i], result, ""});
+    }
+    return checks;
+}
+
+/// Historians differ in the case of their tags; what has no counterpart is named.
+TEST(Check, BatchesAreComparedByTag) {
+    const PlantChecks before = with_loops({"FIC1", "LIC2", "TIC3"});
+    PlantChecks now = with_loops({"fic1", "LIC2", "PIC4"});
+    const Json compared = Json::parse(now.answer(true, &before));
+    ASSERT_EQ(compared["changes"].size(), 2U);
+    EXPECT_EQ(compared["changes"][0]["tag"], "fic1");
+    EXPECT_EQ(compared["only_now"], Json::array({"PIC4"}));
+    EXPECT_EQ(compared["only_before"], Json::array({"TIC3"}));
+    EXPECT_EQ(compared["complete"], true);
+    now.add({3, "job", "AIC5", "", ""});
+    EXPECT_EQ(Json::parse(now.answer(true, nullptr))["complete"], false) << "one was cancelled";
 }
 
 /// Twice the variability is no chance; a hundredth more is.

@@ -136,14 +136,14 @@ TEST(CheckReport, WhatOnlyResemblesACheckNeverStopsTheService) {
 TEST(CheckReport, TheTableIsInTheOrderOfTheRanking) {
     const std::string shown = check_text(result());
     EXPECT_THAT(shown, HasSubstr("3 loops: 1 sticking valve, 1 disturbed from outside, 1 healthy.\n\n"
-                                 "   loop    cause                   confidence  do first          owner        gain "
-                                 "(m3/h)  of the error  period (s)\n"
-                                 "1  FIC101  Sticking valve          sure        repair the valve  instruments        "
-                                 "0.227          58 %          54\n"
-                                 "2  LIC104  Disturbed from outside  likely      find the source   process             "
-                                 "   -             -        54.2\n"
-                                 "3  FIC<2>  Healthy                 likely      nothing           –                   "
-                                 "   0           0 %           -\n"));
+                                 "   loop    cause                   confidence  do first              owner        "
+                                 "gain (m3/h)  of the error  period (s)\n"
+                                 "1  FIC101  Sticking valve          sure        repair the valve      instruments  "
+                                 "      0.227          58 %          54\n"
+                                 "2  LIC104  Disturbed from outside  likely      correct FIC101 first  process      "
+                                 "          -             -        54.2\n"
+                                 "3  FIC<2>  Healthy                 likely      nothing               –            "
+                                 "          0           0 %           -\n"));
     EXPECT_THAT(shown, HasSubstr("Oscillate together: FIC101, LIC104\n  FIC101 moves first.\n"));
     EXPECT_THAT(shown, HasSubstr("Cascade: LIC104 gives FIC<2> its set point.\n"));
     EXPECT_THAT(shown, HasSubstr("\nFIC101\n  It oscillates.\n  A valve that sticks explains it.\n  Have the valve"));

@@ -1327,8 +1327,11 @@ export type components = {
       ranking: components["schemas"]["LoopRank"][];
       changes?: {
         loop: number;
+        tag: string;
         change: components["schemas"]["LoopChange"];
       }[];
+      only_now?: string[];
+      only_before?: string[];
       failed: number;
       complete: boolean;
     };

@@ -54,6 +54,8 @@ Action action_for(const LoopCheck& check, const std::string& source) {
             return {check_transmitter, Owner::instruments,
                     "The measurement stands still while the output moves. Look at the transmitter and its line."};
         case Verdict::undetermined:
+            if (check.performance.variability == 0)
+                return {record_again, Owner::operations, "Check this loop again when its unit runs, or leave it out."};
             return {test, Owner::control, "A test tells more: put the loop in manual for some periods, or step it."};
         case Verdict::insufficient_data:
             if (has_remark(check, kMeasurementAtLimit))

@@ -111,6 +111,7 @@ TEST(CheckLimits, AUnitThatIsShutDownIsNoFrozenSensor) {
     const LoopCheck check = answer_about(record);
     EXPECT_EQ(check.cause.verdict, Verdict::undetermined);
     EXPECT_EQ(check.cause.confidence, Confidence::open);
+    EXPECT_EQ(check.action.code, ActionCode::record_again) << "a test would show nothing";
 }
 
 /// Rows without an output say nothing about whether somebody controls.

@@ -238,8 +238,10 @@ std::optional<Problem> Loops::find_columns(long number, const std::vector<std::s
     todays_.clear();
     const auto known = [](std::string_view heading) { return column_named(split_heading(heading).name).has_value(); };
     if (std::ranges::none_of(headings, known))
-        return refused("Line " + std::to_string(number) +
-                       " has no heading of a column of loops. Put name,K,T,L into the first line, above the loops.");
+        return refused(
+            "Line " + std::to_string(number) +
+            " has no heading of a column of loops. Put name,K,T,L into the first line, above the loops. For records of "
+            "loops in operation add ?kind=check.");
     width_ = headings.size();
     while (width_ > 0 && headings[width_ - 1].empty()) --width_;
     std::array<std::string, kColumns> units;

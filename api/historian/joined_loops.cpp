@@ -88,7 +88,8 @@ TaggedLoop loop_of_tags(const std::string& name, const std::array<const TaggedLo
 }
 
 Problem no_loop(std::size_t files) {
-    if (files == 0) return unreadable_loops("There is no file with records.");
+    if (files == 0)
+        return unreadable_loops("There is no file with records: send at least one, in a form as the part file.");
     return unreadable_loops(
         "No loop was found: a loop needs a measurement and a controller output, such as the files FIC101.PV.csv and "
         "FIC101.OP.csv, or the columns FIC101.PV and FIC101.OP.");

@@ -268,6 +268,11 @@ private:
     api::KnownLoops known_;
 };
 
+/// "" for a unit of time, else what is wrong with it.
+std::string unit_of_time(const std::string& unit) {
+    return api::seconds_per(unit) ? "" : unit + " is no unit of time; give one such as ms, s, min or h.";
+}
+
 }  // namespace
 
 void add_check_command(CommandTree& tree) {
@@ -284,6 +289,7 @@ void add_check_command(CommandTree& tree) {
         ->type_name("FILE");
     app.add_option("--time-unit", checking.time_unit,
                    "Unit of the times of the files, if they give none or a wrong one")
+        ->check(unit_of_time)
         ->type_name("UNIT");
     app.add_option("--answer-unit", checking.answer_unit, "Unit of the times of the answer; s if not given")
         ->type_name("UNIT");

@@ -8,6 +8,7 @@
 #include "api/batch/multipart.h"
 #include "api/batch/plant_checks.h"
 #include "api/check_service.h"
+#include "api/csv/time_stamp.h"
 #include "api/json/json.h"
 #include "api/json/utf8.h"
 #include "server/http/app/negotiation.h"
@@ -105,6 +106,8 @@ std::optional<Response> judge_notify(NotifyPolicy& policy, const http::Request& 
     return std::nullopt;
 }
 
+constexpr const char* kUnitsOfTime = "it must be a unit of time, such as ms, s, min or h.";
+
 /// Reads the parameters about recorded loops. Everything else would be an option of a method, and a check has none.
 std::optional<Response> read_kind(const http::Request& request, api::BatchQuestion& question) {
     const auto kind = request.query.find("kind");
@@ -117,8 +120,10 @@ std::optional<Response> read_kind(const http::Request& request, api::BatchQuesti
     for (const auto& [name, value] : std::exchange(question.options, {})) {
         if (question.kind == api::BatchKind::tune)
             question.options.emplace_back(name, value);
-        else if (name == "units.time")
+        else if (name == "units.time" && api::seconds_per(value))
             question.time_unit = value;
+        else if (name == "units.time")
+            refuse_parameter(problem, name, value, kUnitsOfTime);
         else if (name == "settings" && (value == "true" || value == "false"))
             question.settings = value == "true";
         else if (name == "settings")

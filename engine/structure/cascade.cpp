@@ -22,6 +22,7 @@ using Eigen::VectorXd;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kValveOverLoops = 1.15;                       // the default limit on Ms_valve
 constexpr int kPerDecade = 40;                                 // frequencies of a search
+constexpr double kBelow = 1e-2, kAbove = 1e2;                  // of the corners of both plants
 constexpr double kLeastPeak = -0.3;                            // ln below a limit: peaks that a step may reach
 constexpr double kMostMove = 4;                                // ln of a setting from its start
 constexpr double kWeaker[] = {1, 0.7, 0.45, 0.25, 0.1, 0.03};  // factors of the outer gain until the limits hold
@@ -60,23 +61,6 @@ private:
     IdealPid start_;
 };
 
-/// Frequencies from far below to far above both loops.
-std::vector<double> search_grid(const CascadePlants& plants) {
-    double low = kInfinity, high = 0;
-    for (const LinearPlant* plant : {&plants.inner, &plants.outer}) {
-        const auto add = [&](double omega) {
-            if (!(omega > 0) || !std::isfinite(omega)) return;
-            low = std::min(low, omega);
-            high = std::max(high, omega);
-        };
-        add(1 / plant->time_scale());
-        for (const auto pole : plant->poles()) add(std::abs(pole));
-        if (plant->dead_time() > 0) add(1 / plant->dead_time());
-    }
-    if (!(high > 0)) low = high = 1;
-    return logarithmic(low * 1e-2, high * 1e2, kPerDecade);
-}
-
 /// ln of the functions over their limits: S and T of the outer loop, S at the valve, S of the inner loop.
 void excess_of(const CascadeDiagram& all, const CascadeDiagram& inner, const CascadeDesign& limits, bool sequential,
                double omega, std::vector<double>& excess) {
@@ -98,7 +82,7 @@ public:
           design_(design),
           inner_(start.inner),
           outer_(start.outer),
-          grid_(search_grid(plants)),
+          grid_(frequencies_around({&plants.inner, &plants.outer}, kBelow, kAbove, kPerDecade)),
           control_(control) {}
 
     LimitedResult outer_only(const VectorXd& start) const { return run(start, false); }

@@ -13,6 +13,7 @@
 #include "engine/blocks/diagram_loop.h"
 #include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/structure/interaction_gains.h"
 #include "engine/structure/limited_search.h"
 #include "engine/structure/local_peaks.h"
@@ -37,7 +38,7 @@ constexpr double kLeastPeak = -0.3;                           // ln below a limi
 constexpr double kMostMove = 5;                               // ln of a setting from its start
 constexpr double kUltimateOverKp = 2.2, kPeriodOverTi = 1.2;  // Luyben 1986
 constexpr double kDecibels = 2;                               // of the log modulus, for each loop
-constexpr double kLeastF = 0.3, kMostF = 1000;
+constexpr double kLeastF = 0.3, kMostF = 1000, kOfF = 1e-12;  // the last: relative, where the bisection ends
 constexpr double kWeaker[] = {1, 0.7, 0.5, 0.35, 0.25, 0.15, 0.08};
 constexpr double kStartAbove = 1.2;  // mu of a start over its limit
 constexpr double kFaster = 3;        // factor of a start with one loop quick and the other slow
@@ -153,20 +154,11 @@ std::vector<ParallelPid> parallel(const std::vector<IdealPid>& controllers) {
 }
 
 std::vector<double> grid_of(const PlantMatrix& plants, int per_decade) {
-    double low = kInfinity, high = 0;
-    const auto add = [&](double omega) {
-        if (!(omega > 0) || !std::isfinite(omega)) return;
-        low = std::min(low, omega);
-        high = std::max(high, omega);
-    };
+    std::vector<const LinearPlant*> paths;
     for (const auto& row : plants)
-        for (const auto& plant : row) {
-            if (!plant) continue;
-            add(1 / plant->time_scale());
-            for (const auto pole : plant->poles()) add(std::abs(pole));
-            add(1 / plant->dead_time());
-        }
-    return logarithmic(kBelow * low, kAbove * high, per_decade);
+        for (const auto& plant : row)
+            if (plant) paths.push_back(&*plant);
+    return frequencies_around(paths, kBelow, kAbove, per_decade);
 }
 
 Peak mu_peak(const PlantResponses& plants, const std::vector<IdealPid>& controllers) {
@@ -423,13 +415,11 @@ Expected<BltSettings> blt(const PlantMatrix& plants) {
     // The modulus falls as F grows; below the least stable F it says nothing.
     const PlantResponses responses(plants, grid_of(plants, kPerDecade));
     const double wanted = kDecibels * double(plants.size());
-    double low = kLeastF, high = kMostF;
-    for (int i = 0; i < 60; ++i) {
-        const double F = std::sqrt(low * high);
-        const bool enough = stable_with(plants, at(F), all_loops(plants)) && log_modulus(responses, at(F)) < wanted;
-        (enough ? high : low) = F;
-    }
-    return BltSettings{at(high), high};
+    const auto enough = [&](double F) {
+        return stable_with(plants, at(F), all_loops(plants)) && log_modulus(responses, at(F)) < wanted;
+    };
+    const double F = log_bisect({kMostF, kLeastF}, enough, kOfF).inside;
+    return BltSettings{at(F), F};
 }
 
 Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const InteractionDesign& design,

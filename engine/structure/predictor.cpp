@@ -11,6 +11,7 @@
 #include "engine/blocks/diagram_loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/number_text.h"
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/structure/local_peaks.h"
 #include "engine/structure/loop_design.h"
 
@@ -20,10 +21,10 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kQuickest = 0.02, kSlowest = 50;  // of L + |T|: lambda and Tf
-constexpr int kHalvings = 60;
-constexpr int kPerDecade = 400;             // frequencies at which |S| = |T| is looked for
-constexpr double kLow = 1e-3, kHigh = 1e3;  // of 1/L
+constexpr double kQuickest = 0.02, kSlowest = 50;      // of L + |T|: lambda and Tf
+constexpr double kOfCrossing = 1e-15, kOfKnob = 1e-9;  // relative: where the bisection ends
+constexpr int kPerDecade = 400;                        // frequencies at which |S| = |T| is looked for
+constexpr double kLow = 1e-3, kHigh = 1e3;             // of 1/L
 constexpr double kMostMs = 1.99;
 constexpr double kBesideZero = 1e-5;  // of 1/time scale: the controller's own integrator is left of it
 
@@ -90,11 +91,10 @@ Window window_of(const OverFrequency& T, const std::vector<double>& grid) {
     for (std::size_t i = 1; i < grid.size(); ++i) {
         const double here = difference(grid[i]);
         if ((before < 0) != (here < 0)) {
-            double low = grid[i - 1], high = grid[i];
-            for (int k = 0; k < kHalvings; ++k) {
-                const double middle = std::sqrt(low * high);
-                ((difference(middle) < 0) == (before < 0) ? low : high) = middle;
-            }
+            const double low = log_bisect(
+                                   {grid[i - 1], grid[i]},
+                                   [&](double omega) { return (difference(omega) < 0) == (before < 0); }, kOfCrossing)
+                                   .inside;
             const Complex t = T(low);
             double later = -std::arg(-(1.0 - t) / t);
             if (later < 0) later += 2 * std::numbers::pi;
@@ -193,12 +193,8 @@ double smallest_knob(const PredictorModel& m, const PredictorDesign& design, boo
         return std::min(found.up, found.down) >= *design.dead_time_error * m.L;
     };
     const auto smallest = [&](bool window) {
-        double low = kQuickest * scale, high = kSlowest * scale;
-        for (int i = 0; i < kHalvings && high / low > 1 + 1e-9; ++i) {
-            const double middle = std::sqrt(low * high);
-            (holds(middle, window) ? high : low) = middle;
-        }
-        return high;
+        const auto keeps = [&](double knob) { return holds(knob, window); };
+        return log_bisect({kSlowest * scale, kQuickest * scale}, keeps, kOfKnob).inside;
     };
     const double by_Ms = smallest(false);
     if (!design.dead_time_error) return by_Ms;

@@ -37,6 +37,7 @@ OscillationStudy study_oscillation(const Samples& samples) {
     PeakSearch search(e);
     study.spectrum = search.power_over_period();
     for (double& period : study.spectrum.x) period *= step;
+    std::size_t looked_at = 0;
     while (study.found.periods.size() < kMostPeriods) {
         const double f = search.frequency_of_strongest();
         if (!(f > 0)) break;
@@ -48,7 +49,7 @@ OscillationStudy study_oscillation(const Samples& samples) {
         else if (study.found.periods.empty())
             study.strongest = period;
         search.remove(f);
-        if (++study.looked_at >= 2 * kMostPeriods) break;
+        if (++looked_at >= 2 * kMostPeriods) break;
     }
     study.found.found = !study.found.periods.empty();
     if (study.found.found) study.strongest = study.found.periods.front();

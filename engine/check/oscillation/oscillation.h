@@ -16,7 +16,6 @@ struct OscillationStudy {
     std::vector<double> autocorrelation;  ///< of the error, from lag 0
     Curve spectrum;                       ///< share of the error's power over period, time
     Period strongest;                     ///< the first found one, else the strongest, which is not regular
-    std::size_t looked_at = 0;            ///< peaks of the spectrum
 };
 
 OscillationStudy study_oscillation(const Samples& samples);

@@ -76,7 +76,6 @@ std::optional<SetPointResponse> set_point_response(const Samples& samples) {
     if (!risen) return std::nullopt;
     out.dead_time = *begun * samples.step;
     out.rise = (*risen - *begun) * samples.step;
-    out.overshoot = std::max(0.0, *std::ranges::max_element(sum) - 1);
     return out;
 }
 

@@ -11,7 +11,6 @@ struct SetPointResponse {
     int moves = 0;         ///< that are averaged
     double dead_time = 0;  ///< until a twentieth of the move, time
     double rise = 0;       ///< from there to 63 % of the move, time
-    double overshoot = 0;  ///< of the move, 0: none
     double noise = 0;      ///< standard deviation of the mean response, of the move
 };
 

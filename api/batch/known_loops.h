@@ -15,7 +15,7 @@
 
 namespace tunewright::api {
 
-/// What is known of one loop.
+/// The facts about one loop.
 struct KnownLoop {
     std::string tag;                ///< as written
     Json members = Json::object();  ///< as members of a CheckLoop
@@ -32,7 +32,7 @@ public:
     /// column, for an unknown column and for a tag that occurs twice.
     static std::variant<KnownLoops, Problem> read(std::string_view bytes, const std::string& time_unit);
 
-    /// What is known of the loop with this tag, in any letter case; null if nothing is.
+    /// The facts about the loop with this tag, whatever the case of its letters; null if the table has none.
     const KnownLoop* of(const std::string& tag);
     /// A sentence that names the tags that of() was not asked for; "" if there are none.
     std::string unused_note() const;

@@ -41,7 +41,7 @@ void append_modes(TaggedLoop& whole, const TaggedLoop& part) {
     append(whole.mode, whole.t.size(), modes, part.t.size(), std::uint8_t{0});
 }
 
-/// The values of a tag, whose clock begins `later`; none if there is no tag.
+/// The values of a tag with its times moved by `later`; empty without a tag.
 TagValues values_of(const TaggedLoop* tag, double later) {
     TagValues out;
     if (tag == nullptr) return out;

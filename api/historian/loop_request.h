@@ -8,7 +8,7 @@
 
 namespace tunewright::api {
 
-/// What the requests of one file have in common.
+/// Members that all requests made from one file share.
 struct CheckTerms {
     std::string time_unit = "s";  ///< of the times of the loops
     bool unit_given = false;      ///< it is also that of the answer

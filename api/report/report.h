@@ -22,7 +22,7 @@ namespace tunewright::api {
 std::variant<std::string, Problem> report_html(const ResultSource& source, std::string_view index,
                                                const ReportWords& words);
 
-/// The report of many loops, of which only those with a page of their own are ever in memory with their drawings.
+/// The report of many loops. Only the loops that have a page are in memory with their drawings.
 class BatchReport {
 public:
     /// `check`: BatchCheck of the document, without drawings.

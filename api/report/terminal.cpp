@@ -379,7 +379,7 @@ std::string notes_of(const Json& answer) {
     return out.empty() ? "" : "\n" + out;
 }
 
-/// What was found on the records.
+/// The remarks on the records, by loop.
 std::string remarks_of(const Json& answer, const std::vector<std::size_t>& order) {
     std::string out;
     for (const std::size_t place : order) {

@@ -20,8 +20,8 @@ namespace tunewright {
 struct Block {
     int from = 0, to = 0;
     LinearPlant plant;
-    /// What reaches the block cancels its poles, as in a predictor's model of an integrator less its own past: they are
-    /// no poles of the loops.
+    /// True: the block's input has zeros at its poles, so these are no poles of the loops. Example: the model of an
+    /// integrator in a predictor, whose input is u minus the filtered past of u.
     bool cancelled = false;
 };
 

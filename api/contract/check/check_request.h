@@ -19,7 +19,7 @@ struct LoopRanges {
     std::optional<std::array<double, 2>> pv, op;
 };
 
-/// What is known of a loop apart from its record.
+/// Facts about a loop that its record does not contain: kind, ranges, settings, weight.
 struct LoopFacts {
     check::LoopKind kind = check::LoopKind::unknown;
     std::optional<bool> averaging;

@@ -5,7 +5,7 @@
 
 namespace tunewright::api {
 
-/// What is designed, or the controllers that are judged, in the order of the outputs.
+/// Either a design, or given controllers to judge, one for each output.
 struct InteractionControllers {
     ControllerKind kind = ControllerKind::PI;
     std::vector<std::optional<IdealPid>> given;

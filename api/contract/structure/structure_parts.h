@@ -1,4 +1,4 @@
-// What requests and answers about loops around the loop have in common.
+// Parts that the requests and answers of the calls for cascade, level, feedforward, interaction and predictor share.
 #pragma once
 
 #include <initializer_list>

@@ -18,6 +18,7 @@
 #include "api/json/json.h"
 #include "api/outline.h"
 #include "api/services/range_service.h"
+#include "api/services/structure_service.h"
 #include "engine/evaluation/best_so_far.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
@@ -84,16 +85,39 @@ bool canonicalise_plants(Json& value, const RangeRequest& request) {
     return typed;
 }
 
+/// Records, and plants that a reader of the job finds as they were typed.
 bool canonicalise_plants(Json&, const CheckRequest&) { return false; }
+bool canonicalise_plants(Json&, const StructureRequest&) { return false; }
 
-void keep_decoded(PreparedJob& job, JobRequest&& request) {
-    job.request = std::make_shared<const JobRequest>(std::move(request));
+JobSubject subject_of(const Json& request) {
+    if (!structure_of(request).empty()) return JobSubject::structure;
+    if (is_check_request(request)) return JobSubject::check;
+    return is_range_request(request) ? JobSubject::range : JobSubject::loop;
 }
-void keep_decoded(PreparedJob& job, RangeRequest&& request) {
-    job.range = std::make_shared<const RangeRequest>(std::move(request));
+
+/// Calls `use` with the contract of the request.
+template <class Use>
+auto with_contract(const Json& request, const Use& use) {
+    const std::string structure = structure_of(request);
+    if (structure == "cascade") return use(cascade_request_contract());
+    if (structure == "level") return use(level_request_contract());
+    if (structure == "feedforward") return use(feedforward_request_contract());
+    if (structure == "interaction") return use(interaction_request_contract());
+    if (structure == "predictor") return use(predictor_request_contract());
+    if (is_check_request(request)) return use(check_request_contract());
+    return is_range_request(request) ? use(range_request_contract()) : use(job_contract());
 }
-void keep_decoded(PreparedJob& job, CheckRequest&& request) {
-    job.check = std::make_shared<const CheckRequest>(std::move(request));
+
+JobOutcome outcome_of(JobRequest request, std::string_view hash, const RunControl& control);
+JobOutcome outcome_of(RangeRequest request, std::string_view hash, const RunControl& control) {
+    return range_outcome(std::move(request), hash, control);
+}
+JobOutcome outcome_of(CheckRequest request, std::string_view hash, const RunControl& control) {
+    return check_outcome(std::move(request), hash, control);
+}
+template <std::derived_from<StructureRequest> Request>
+JobOutcome outcome_of(const Request& request, std::string_view hash, const RunControl& control) {
+    return structure_outcome(request, hash, control);
 }
 
 /// `text` is the stored request unless it has a typed plant.
@@ -117,15 +141,15 @@ std::variant<PreparedJob, Problem> prepared_as(const Description<Request>& contr
                     .unique = request.unique};
     leave_out_terms(value);
     job.request_hash = sha256_hex(canonical(value));
-    keep_decoded(job, std::move(request));
+    job.subject = subject_of(value);
+    job.run = [kept = std::make_shared<const Request>(std::move(request))](
+                  std::string_view hash, const RunControl& control) { return outcome_of(*kept, hash, control); };
     return job;
 }
 
 template <class Spelling>
 std::variant<PreparedJob, Problem> prepared(Json& value, const JobLimits& limits, const Spelling& text) {
-    if (is_check_request(value)) return prepared_as(check_request_contract(), value, limits, text);
-    return is_range_request(value) ? prepared_as(range_request_contract(), value, limits, text)
-                                   : prepared_as(job_contract(), value, limits, text);
+    return with_contract(value, [&](const auto& contract) { return prepared_as(contract, value, limits, text); });
 }
 
 /// Sets the default of a batch's entry, no traces; a value of the wrong type is left for the contract to refuse.
@@ -181,7 +205,7 @@ Expected<TuningResult> tuned(JobRequest request, const RunControl& control) {
 }
 
 /// The answer to a request whose hash is known.
-JobOutcome computed(JobRequest request, std::string_view hash, const RunControl& control) {
+JobOutcome outcome_of(JobRequest request, std::string_view hash, const RunControl& control) {
     const std::string method = method_label(request);
     const std::optional<Units> units = request.units;
     const Outline outline(request);
@@ -222,9 +246,7 @@ std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const Jo
     auto job = prepared(value, limits, [&] { return value.dump(); });
     // Entries wait for the store in groups, as text only.
     if (auto* ready = std::get_if<PreparedJob>(&job)) {
-        ready->request.reset();
-        ready->range.reset();
-        ready->check.reset();
+        ready->run = {};
     }
     return job;
 }
@@ -248,28 +270,18 @@ std::variant<std::string, Problem> request_of_result(std::string_view result, co
 }
 
 JobOutcome run_job(const PreparedJob& job, const RunControl& control) {
-    if (job.check) return check_outcome(*job.check, job.request_hash, control);
-    if (job.range) return range_outcome(*job.range, job.request_hash, control);
-    return computed(*job.request, job.request_hash, control);
+    return job.run(job.request_hash, control);
 }
 
 JobOutcome run_job(const StoredRequest& stored, const RunControl& control) {
     const auto parsed = parse(stored.json);
     if (const auto* problem = std::get_if<Problem>(&parsed)) return failure(*problem);
     const Json& value = std::get<Json>(parsed);
-    if (is_check_request(value)) {
-        auto check = decode(value, check_request_contract());
-        if (const auto* problem = std::get_if<Problem>(&check)) return failure(*problem);
-        return check_outcome(std::get<CheckRequest>(std::move(check)), stored.hash, control);
-    }
-    if (is_range_request(value)) {
-        auto range = decode(value, range_request_contract());
-        if (const auto* problem = std::get_if<Problem>(&range)) return failure(*problem);
-        return range_outcome(std::get<RangeRequest>(std::move(range)), stored.hash, control);
-    }
-    auto decoded = decode(value, job_contract());
-    if (const auto* problem = std::get_if<Problem>(&decoded)) return failure(*problem);
-    return computed(std::get<JobRequest>(std::move(decoded)), stored.hash, control);
+    return with_contract(value, [&](const auto& contract) {
+        auto decoded = decode(value, contract);
+        const auto* problem = std::get_if<Problem>(&decoded);
+        return problem != nullptr ? failure(*problem) : outcome_of(std::get<0>(std::move(decoded)), stored.hash, control);
+    });
 }
 
 std::string progress_json(const Progress& progress) {

@@ -11,13 +11,13 @@
 #include "api/json/problem.h"
 #include "api/outcome.h"
 #include "api/shorthand.h"
+#include "engine/callable.h"
 #include "engine/progress.h"
 
 namespace tunewright::api {
 
-struct JobRequest;
-struct RangeRequest;
-struct CheckRequest;
+/// What a job is about.
+enum class JobSubject { loop, range, check, structure };
 
 /// A tuning request that has been read and found valid.
 struct PreparedJob {
@@ -29,10 +29,9 @@ struct PreparedJob {
     bool low_priority = false;
     std::optional<std::int64_t> not_before = {};  ///< start time, ms since 1970, UTC
     bool unique = false;                          ///< an earlier job with the same hash may answer
-    /// The decoded request for a run in this process: one of the three; all null for an entry of a batch.
-    std::shared_ptr<const JobRequest> request = {};
-    std::shared_ptr<const RangeRequest> range = {};
-    std::shared_ptr<const CheckRequest> check = {};
+    JobSubject subject = JobSubject::loop;
+    /// Runs the decoded request in this process, given its hash; empty for an entry of a batch.
+    Callable<JobOutcome(std::string_view hash, const RunControl& control)> run = {};
 };
 
 /// A prepared request as stored; any process can run it from its text.

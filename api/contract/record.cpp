@@ -527,8 +527,8 @@ std::string dropped_sentence(const ReadRecord& read) {
 
 }  // namespace
 
-std::vector<std::string> reading_sentences(const ReadRecord& read) {
-    std::vector<std::string> out = read.notes;
+std::vector<std::string> reading_faults(const ReadRecord& read) {
+    std::vector<std::string> out;
     if (!read.unread.empty()) out.push_back(read.unread);
     if (!read.unread_column.empty()) out.push_back(read.unread_column);
     if (const auto warning = mode_warning(read)) out.push_back(warning->detail);

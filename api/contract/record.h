@@ -76,8 +76,8 @@ void check_disturbances(const Record& record, bool from_csv, Reader& reader);
 /// The warning unknown-mode, if there are unknown modes.
 std::optional<Warning> mode_warning(const ReadRecord& read);
 
-/// The findings of reading the record, a sentence each.
-std::vector<std::string> reading_sentences(const ReadRecord& read);
+/// What is wrong with the record as it was read, a sentence each; how it was read is in its notes.
+std::vector<std::string> reading_faults(const ReadRecord& read);
 
 /// Adds the findings of reading the record to the model.
 void add_reading(const ReadRecord& read, IdentifiedModel& model);

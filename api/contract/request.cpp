@@ -360,7 +360,9 @@ namespace {
 
 constexpr int kMaxPoints = 20'000;
 
-Codec<int> points() {
+}  // namespace
+
+Codec<int> trace_points() {
     Codec<int> codec = integer(0, kMaxPoints);
     codec.read = [](const Json& value, int& target, Reader& reader) {
         const auto read = read_number(value, {}, reader);
@@ -376,6 +378,8 @@ Codec<int> points() {
     };
     return codec;
 }
+
+namespace {
 
 Codec<std::optional<double>> horizon() {
     Codec<std::optional<double>> codec;
@@ -448,7 +452,7 @@ const Description<EvaluateQuestion>& evaluate_options_contract() {
                 "horizon", own(&EvaluateOptions::horizon), horizon(),
                 "Length of the responses; a number also ends the indices, which with auto are integrals to infinity.",
                 {.unit = "time"})
-            .field("points", own(&EvaluateOptions::points), points(),
+            .field("points", own(&EvaluateOptions::points), trace_points(),
                    "Points of each trace: 0 (no traces) or 2 to 20000.")
             .field("actuator", own(&EvaluateOptions::actuator), maybe(object(actuator_contract())), "Limits of u.")
             .field("noise", own(&EvaluateOptions::noise), maybe(object(noise_contract())), "Measurement noise.")

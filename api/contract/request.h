@@ -79,6 +79,9 @@ bool is_request_member(std::string_view name);
 /// The analysed plant; empty after a fault, which the reader then has.
 std::optional<AnalysedPlant> subject_of(const PlantModel& plant, Reader& reader);
 
+/// Points of a trace: 0 (none), or from 2 on.
+Codec<int> trace_points();
+
 /// The members that every request may carry.
 template <class Request>
 void add_labels(Description<Request>& d) {

@@ -5,6 +5,11 @@
 
 #include "api/contract/check/check_request.h"
 #include "api/contract/range/range_request.h"
+#include "api/contract/structure/cascade_call.h"
+#include "api/contract/structure/feedforward_call.h"
+#include "api/contract/structure/interaction_call.h"
+#include "api/contract/structure/level_call.h"
+#include "api/contract/structure/predictor_call.h"
 #include "api/contract/request.h"
 #include "api/csv/time_stamp.h"
 #include "api/describe/body.h"
@@ -84,6 +89,11 @@ void add_terms(Description<Request>& description) {
 template void add_terms(Description<JobRequest>& description);
 template void add_terms(Description<RangeRequest>& description);
 template void add_terms(Description<CheckRequest>& description);
+template void add_terms(Description<CascadeRequest>& description);
+template void add_terms(Description<LevelRequest>& description);
+template void add_terms(Description<FeedforwardRequest>& description);
+template void add_terms(Description<InteractionRequest>& description);
+template void add_terms(Description<PredictorRequest>& description);
 
 std::optional<Problem> refuse_far(const std::optional<std::int64_t>& not_before) {
     using std::chrono::milliseconds;

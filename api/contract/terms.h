@@ -36,7 +36,7 @@ struct JobTerms {
     bool unique = false;
 };
 
-/// The members of Terms, for JobRequest and RangeRequest.
+/// The terms, for each type of request that may be a job.
 template <class Request>
 void add_terms(Description<Request>& description);
 

@@ -22,6 +22,14 @@ std::vector<Html> sentences_at(const JsonLocation& list, const char* member) {
     return out;
 }
 
+/// The same of a list of sentences.
+std::vector<Html> sentences_in(const JsonLocation& list) {
+    std::vector<Html> out;
+    for (const Json& sentence : list.value())
+        if (sentence.is_string()) add_sentence(out, sentence.get<std::string>());
+    return out;
+}
+
 /// The place of the loop in the ranking; null if it has none.
 JsonLocation rank_of(const ReportInput& s, std::size_t loop) {
     const JsonLocation ranking = s.result.at("ranking");
@@ -91,9 +99,7 @@ Html cascades_of(const ReportInput& s) {
 }
 
 Html notes_of_files(const ReportInput& s) {
-    std::vector<Html> notes;
-    for (const Json& note : s.result.at("notes").value())
-        if (note.is_string()) add_sentence(notes, note.get<std::string>());
+    const std::vector<Html> notes = sentences_in(s.result.at("notes"));
     return notes.empty() ? Html() : section("Files", list(notes));
 }
 
@@ -270,10 +276,12 @@ Html page_of_loop(const ReportInput& plant, std::size_t place) {
     std::string source = tag_of_loop(s.result.value(), rank.at("after").value());
     if (!source.empty()) source = "Mend " + source + " first: it disturbs this loop.";
     const std::vector<Html> remarks = sentences_at(loop.at("quality").at("remarks"), "detail");
+    const std::vector<Html> readings = sentences_in(loop.at("quality").at("readings"));
     return element("section",
                    element("h1", text_at(loop.at("tag"))) + (source.empty() ? Html() : element("p", source)) +
                        cause_of(loop) + action_of(s, loop, rank) +
                        (remarks.empty() ? Html() : section("Remarks on the record", list(remarks))) +
+                       (readings.empty() ? Html() : section("How the file was read", list(readings))) +
                        drawings_of(s, loop) + figures_of(s, loop),
                    {{"class", "loop"}});
 }

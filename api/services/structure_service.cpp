@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "api/contract/structure/cascade_call.h"
-#include "api/contract/structure/feedforward_call.h"
-#include "api/contract/structure/interaction_call.h"
-#include "api/contract/structure/level_call.h"
-#include "api/contract/structure/predictor_call.h"
 #include "api/describe/body.h"
+#include "engine/structure/drawing.h"
 
 namespace tunewright::api {
 namespace {
@@ -18,8 +15,25 @@ namespace {
 using structure::CascadeControllers;
 using structure::CascadeResult;
 
-/// A search that was stopped has no answer: its partial result is not kept.
-Error stopped() { return {ErrorKind::timeout, "", "The design was stopped."}; }
+Error stopped() { return {ErrorKind::cancelled, "", "The design was stopped."}; }
+
+/// The views without those that cannot be drawn: the answer then has no series of them.
+using Views = std::vector<structure::StructureView>;
+void add_view(Views& views, Expected<structure::StructureView> view) {
+    if (view) views.push_back(std::move(*view));
+}
+
+/// What is typed into the user's product for the controller number `place`.
+void add_settings(const StructureRequest& request, const std::string& loop, std::size_t place,
+                  const IdealPid& controller, StructureAnswer& out) {
+    if (request.devices.empty()) return;
+    const device::DeviceModel& device =
+        request.devices.size() == 1 ? request.devices.front() : request.devices[std::min(place, request.devices.size() - 1)];
+    if (device.product == nullptr) return;
+    auto fitted = device::fit(device, controller);
+    out.settings.push_back({loop, fitted ? OrReason<device::Fitted>(std::move(*fitted))
+                                         : OrReason<device::Fitted>({}, fitted.error().message)});
+}
 
 Expected<CascadeResult> given_cascade(const CascadeRequest& request, const CascadeControllers& controllers) {
     auto figures = judge_cascade(request.plants(), controllers);
@@ -39,9 +53,9 @@ Expected<CascadeResult> cascade_of(const CascadeRequest& request, const RunContr
 Expected<CascadeAnswer> answered(const CascadeRequest& request, const RunControl& control) {
     auto result = cascade_of(request, control);
     if (!result) return result.error();
-    if (result->partial) return stopped();
     CascadeAnswer out;
     out.result = std::move(*result);
+    out.partial = out.result.partial;
     out.limit_valve = request.design().valve_limit();
     if (request.compare_single) {
         auto single = design_single_loop(request.plants(), request.outer.tune, control);
@@ -58,14 +72,30 @@ Expected<CascadeAnswer> answered(const CascadeRequest& request, const RunControl
         out.baseline = std::move(*today);
     }
     out.verdict = conclusions_on(out.result.figures, request.design(), out.single ? &*out.single : nullptr);
+    const structure::CascadeDesign limits = request.design();
+    Views views;
+    add_view(views, cascade_view("design", request.plants(), out.result.controllers, &limits));
+    if (out.single) add_view(views, single_view(request.plants(), out.single->controller));
+    if (request.baseline)
+        add_view(views, cascade_view("baseline", request.plants(), {*request.baseline->inner, *request.baseline->outer},
+                                     nullptr));
+    out.drawing = drawing_of(views, request.points);
+    add_settings(request, "inner", 0, out.result.controllers.inner, out);
+    add_settings(request, "outer", 1, out.result.controllers.outer, out);
     return out;
 }
 
 Expected<LevelAnswer> answered(const LevelRequest& request, const RunControl&) {
     auto result = design_level(request.problem);
     if (!result) return result.error();
-    LevelAnswer out{std::move(*result), {}};
+    LevelAnswer out;
+    out.result = std::move(*result);
     out.verdict = conclusions_on(out.result, request.problem);
+    const structure::LevelDesign& design = out.result.design;
+    Views views;
+    if (request.problem.gap == 0) add_view(views, level_view(request.problem, design));
+    out.drawing = drawing_of(views, request.points);
+    add_settings(request, "level", 0, IdealPid{.Kp = -design.Kc, .Ti = design.Ti}, out);
     return out;
 }
 
@@ -86,31 +116,53 @@ Expected<FeedforwardAnswer> answered(const FeedforwardRequest& request, const Ru
                                                 .wrong = request.uncertainty};
     auto result = design_feedforward(problem, control);
     if (!result) return result.error();
-    if (result->partial) return stopped();
     out.result = std::move(*result);
+    out.partial = out.result.partial;
     out.verdict = conclusions_on(out.result, problem);
+    Views views;
+    for (const structure::FeedforwardVariant& variant : out.result.variants)
+        if (variant.why_not.empty())
+            add_view(views, feedforward_view(name_of(variant.kind), problem, variant.compensator));
+    // The loop's peak is that of each variant.
+    for (std::size_t i = 1; i < views.size(); ++i) views[i].curves.clear();
+    out.drawing = drawing_of(views, request.points);
+    add_settings(request, "feedback", 0, out.feedback, out);
     return out;
 }
 
-Expected<PredictorAnswer> answered(const PredictorRequest& request, const RunControl& control) {
-    PredictorAnswer out;
-    if (request.controller) {
-        auto figures = judge_predictor(*request.plant, *request.controller);
-        if (!figures) return figures.error();
-        out.controller = *request.controller;
-        out.figures = std::move(*figures);
-        out.pid.why = out.pid_IAE.why = "A given controller is not compared.";
-        out.verdict = conclusions_on(out.figures, out.pid_IAE, false, request.plant->dead_time());
-        return out;
-    }
+Expected<PredictorAnswer> designed_predictor(const PredictorRequest& request, const RunControl& control) {
     auto result = design_predictor(request.of_model, *request.plant, request.design, control);
     if (!result) return result.error();
     if (control.stop.stop_requested()) return stopped();
+    PredictorAnswer out;
     out.controller = std::move(result->controller);
     out.figures = std::move(result->figures);
     out.pid = {result->pid, result->pid_IAE.why};
     out.pid_IAE = std::move(result->pid_IAE);
     out.verdict = conclusions_on(out.figures, out.pid_IAE, result->limited_by_dead_time, request.plant->dead_time());
+    return out;
+}
+
+Expected<PredictorAnswer> given_predictor(const PredictorRequest& request) {
+    auto figures = judge_predictor(*request.plant, *request.controller);
+    if (!figures) return figures.error();
+    PredictorAnswer out;
+    out.controller = *request.controller;
+    out.figures = std::move(*figures);
+    out.pid.why = out.pid_IAE.why = "A given controller is not compared.";
+    out.verdict = conclusions_on(out.figures, out.pid_IAE, false, request.plant->dead_time());
+    return out;
+}
+
+Expected<PredictorAnswer> answered(const PredictorRequest& request, const RunControl& control) {
+    auto out = request.controller ? given_predictor(request) : designed_predictor(request, control);
+    if (!out) return out;
+    Views views;
+    const auto limit = request.controller ? std::nullopt : std::optional<double>(request.design.Ms);
+    add_view(views, predictor_view(*request.plant, out->controller, limit));
+    if (out->pid) add_view(views, structure::pid_view(*request.plant, *out->pid));
+    out->drawing = drawing_of(views, request.points);
+    if (out->pid) add_settings(request, "pid", 0, *out->pid, *out);
     return out;
 }
 
@@ -164,7 +216,7 @@ Expected<InteractionAnswer> answered(const InteractionRequest& request, const Ru
                                                      .weight = request.weights.y},
                                                     control);
         if (!result) return result.error();
-        if (result->partial) return stopped();
+        out.partial = result->partial;
         out.controllers = std::move(result->controllers);
         out.figures = std::move(result->figures);
         blt = std::move(result->blt);
@@ -197,7 +249,33 @@ Expected<InteractionAnswer> answered(const InteractionRequest& request, const Ru
         out.compared.push_back(std::move(*today));
     }
     out.verdict = conclusions_on(out.figures, out.gains, out.chosen, request.limit.mu, out.cost, blt_cost);
+    Views views;
+    add_view(views, structure::interaction_view("design", plants, out.controllers, request.limit.mu));
+    for (const ComparedControllers& other : out.compared)
+        if (!other.controllers.empty()) add_view(views, structure::interaction_view(other.name, plants, other.controllers, {}));
+    out.drawing = drawing_of(views, request.points);
+    for (std::size_t i = 0; i < out.controllers.size(); ++i)
+        add_settings(request, "loop_" + std::to_string(i + 1), i, out.controllers[i], out);
     return out;
+}
+
+/// JobOutline of the document.
+template <class Request>
+std::string outline_of(const Request& request, const char* structure, const StructureAnswer& answer) {
+    Writer out;
+    out.begin_object();
+    if (request.units) {
+        out.key("units");
+        units_contract().write(*request.units, out);
+    }
+    out.key("method").text(structure);
+    out.key("structure").begin_object();
+    out.key("verdict").begin_array();
+    for (const structure::Conclusion& one : answer.verdict) out.text(to_string(one.code));
+    out.end_array();
+    out.end_object();
+    out.end_object();
+    return out.take();
 }
 
 template <class Request, class Result>
@@ -205,11 +283,37 @@ Answer call(std::string_view body, const Description<Request>& contract, const D
             const RunControl& control) {
     const auto decoded = read_body(body, contract);
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
-    const auto result = answered(std::get<Request>(decoded), control);
-    if (!result) return refusal(to_problem(result.error()));
+    const auto& request = std::get<Request>(decoded);
+    auto result = answered(request, control);
+    // The partial result of a search that was stopped is not kept.
+    if (!result || result->partial) return refusal(to_problem(result ? stopped() : result.error()));
+    result->units = request.units;
     Writer out;
     result_contract.write(*result, out);
     return {200, out.take()};
+}
+
+template <class Request, class Result>
+JobOutcome outcome(const Request& request, const char* structure, const Description<Result>& result_contract,
+                   std::string_view hash, const RunControl& control) {
+    JobOutcome outcome;
+    outcome.method = structure;
+    auto result = answered(request, control);
+    if (!result) {
+        outcome.status = JobOutcome::Status::cancelled;
+        if (result.error().kind == ErrorKind::cancelled) return outcome;
+        outcome.status = JobOutcome::Status::failed;
+        outcome.error_json = to_json(to_problem(result.error()));
+        return outcome;
+    }
+    outcome.status = result->partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
+    result->units = request.units;
+    result->request_hash = hash;
+    outcome.outline_json = outline_of(request, structure, *result);
+    Writer out;
+    result_contract.write(*result, out);
+    outcome.result_json = out.take();
+    return outcome;
 }
 
 }  // namespace
@@ -232,6 +336,26 @@ Answer interaction_call(std::string_view body, const RunControl& control) {
 
 Answer predictor_call(std::string_view body, const RunControl& control) {
     return call(body, predictor_request_contract(), predictor_answer_contract(), control);
+}
+
+JobOutcome structure_outcome(const CascadeRequest& request, std::string_view hash, const RunControl& control) {
+    return outcome(request, "cascade", cascade_answer_contract(), hash, control);
+}
+
+JobOutcome structure_outcome(const LevelRequest& request, std::string_view hash, const RunControl& control) {
+    return outcome(request, "level", level_answer_contract(), hash, control);
+}
+
+JobOutcome structure_outcome(const FeedforwardRequest& request, std::string_view hash, const RunControl& control) {
+    return outcome(request, "feedforward", feedforward_answer_contract(), hash, control);
+}
+
+JobOutcome structure_outcome(const InteractionRequest& request, std::string_view hash, const RunControl& control) {
+    return outcome(request, "interaction", interaction_answer_contract(), hash, control);
+}
+
+JobOutcome structure_outcome(const PredictorRequest& request, std::string_view hash, const RunControl& control) {
+    return outcome(request, "predictor", predictor_answer_contract(), hash, control);
 }
 
 }  // namespace tunewright::api

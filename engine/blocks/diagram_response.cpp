@@ -295,4 +295,21 @@ StepResponse DiagramResponse::pair(int y, int u, double r) const {
     return out;
 }
 
+std::vector<double> DiagramResponse::sampled(int signal, const std::vector<double>& t) const {
+    std::vector<double> out;
+    const double input = inputs_[std::size_t(signal)];
+    std::size_t next = 0;  // the first node after t
+    for (const double time : t) {
+        while (next < t_.size() && t_[next] <= time) ++next;
+        if (next == t_.size()) {
+            out.push_back((final_.empty() ? at(next - 1, signal).value : final_[std::size_t(signal)]) - input);
+            continue;
+        }
+        const double start = t_[next - 1];
+        out.push_back(value_at(hermite_taylor(t_[next] - start, at(next - 1, signal), at(next, signal)), time - start) -
+                      input);
+    }
+    return out;
+}
+
 }  // namespace tunewright

@@ -37,6 +37,10 @@ public:
     /// The nodes of two signals, without what enters at u from outside; `r`: what y should become. The error's final
     /// integral is known if y becomes r, as with integral action.
     StepResponse pair(int y, int u, double r) const;
+    /// Of the last node.
+    double end() const { return t_.back(); }
+    /// One signal at ascending times >= 0, without what enters at it from outside; after the last node its final value.
+    std::vector<double> sampled(int signal, const std::vector<double>& t) const;
 
 private:
     friend class DiagramRun;

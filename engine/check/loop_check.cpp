@@ -79,6 +79,7 @@ Expected<LoopCheck> check_loop(const LoopQuestion& question, const std::stop_tok
     const Rows rows = rows_of(question.record);
     const Samples samples = even_samples(rows);
     check.quality = quality_of(rows, samples, question.y_range);
+    check.quality.readings = question.readings;
     for (const std::string& note : question.notes)
         check.quality.remarks.push_back({"file-read", note, WarningLevel::warning});
     const auto u_range = output_range(question, samples);

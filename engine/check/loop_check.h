@@ -63,6 +63,7 @@ struct LoopQuestion {
     UnitNames units;
     std::optional<std::string> unreadable = {};  ///< why there is no record, a sentence: then its answer says only that
     std::vector<std::string> notes = {};         ///< findings of reading the record, for the remarks on it
+    std::vector<std::string> readings = {};      ///< how its file was read, where that was decided and not told
 };
 
 /// How good the record is. Shares are of the rows or of the time, 0 to 1.
@@ -80,6 +81,7 @@ struct RecordQuality {
     bool compressed = false;  ///< most rows lie on stairs or straight lines of a historian
     bool enough = true;       ///< for a diagnosis
     std::vector<Warning> remarks;
+    std::vector<std::string> readings;  ///< how the file was read, no fault of the record
 };
 
 /// Shares of the time, 0 to 1. A figure without a value was not recorded.

@@ -1,5 +1,10 @@
 #include "engine/structure/cascade_diagram.h"
 
+#include <memory>
+#include <utility>
+
+#include "engine/structure/drawing.h"
+
 namespace tunewright::structure {
 namespace {
 
@@ -8,6 +13,14 @@ void add_plants(CascadeDiagram& out, const CascadePlants& plants) {
     out.diagram.add(out.valve, out.y2, plants.inner);
     out.diagram.add(plants.arrangement == Arrangement::series ? out.y2 : out.valve, out.outer_input, 1);
     out.diagram.add(out.outer_input, out.y1, plants.outer);
+}
+
+StructureView view_of(const std::string& of, const CascadeDiagram& all) {
+    return {.of = of,
+            .diagram = all.diagram,
+            .inputs = {{"setpoint", all.r1}, {"outer_load", all.outer_input}, {"inner_load", all.valve}},
+            .outputs = {{"y1", all.y1}, {"y2", all.y2}, {"u", all.valve}},
+            .curves = {}};
 }
 
 Error at(const char* where, Error error) {
@@ -47,6 +60,34 @@ Expected<CascadeDiagram> single_diagram(const CascadePlants& plants, const Ideal
     out.valve = out.r2 = pid->output;
     out.r1 = pid->error;
     add_plants(out, plants);
+    return out;
+}
+
+Expected<StructureView> cascade_view(const std::string& of, const CascadePlants& plants,
+                                     const CascadeControllers& controllers, const CascadeDesign* limits) {
+    const auto all = cascade_diagram(plants, controllers.inner, &controllers.outer);
+    if (!all) return all.error();
+    auto inner = cascade_diagram(plants, controllers.inner, nullptr);
+    StructureView out = view_of(of, *all);
+    std::optional<double> Ms_inner, Ms_outer, Ms_valve;
+    if (limits != nullptr) {
+        Ms_inner = limits->inner.Ms;
+        Ms_outer = limits->outer.Ms;
+        Ms_valve = limits->valve_limit();
+    }
+    const auto own = std::make_shared<const BlockDiagram>(std::move(inner->diagram));
+    const auto whole = std::make_shared<const BlockDiagram>(all->diagram);
+    out.curves = {sensitivity_at("inner", own, inner->valve, Ms_inner),
+                  sensitivity_at("outer", whole, all->r2, Ms_outer),
+                  sensitivity_at("valve", whole, all->valve, Ms_valve)};
+    return out;
+}
+
+Expected<StructureView> single_view(const CascadePlants& plants, const IdealPid& controller) {
+    const auto all = single_diagram(plants, controller);
+    if (!all) return all.error();
+    StructureView out = view_of("single", *all);
+    out.curves = {sensitivity_at("valve", std::make_shared<const BlockDiagram>(all->diagram), all->valve, {})};
     return out;
 }
 

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "engine/blocks/diagram_response.h"
 #include "engine/blocks/diagram_stability.h"
 #include "engine/numerics/optimise/direct_search.h"
+#include "engine/structure/drawing.h"
 #include "engine/structure/loop_design.h"
 
 namespace tunewright::structure {
@@ -230,6 +232,18 @@ Expected<FeedforwardResult> design_feedforward(const FeedforwardProblem& problem
     if (auto error = add(FeedforwardKind::optimum, exact ? inverse : optimum_of(problem, rule, control, out.partial)))
         return *error;
     return out;
+}
+
+Expected<StructureView> feedforward_view(const std::string& of, const FeedforwardProblem& problem,
+                                         const std::optional<Feedforward>& compensator) {
+    auto diagram = diagram_of(problem.plant, problem.disturbance, problem.feedback, compensator);
+    if (!diagram) return diagram.error();
+    const auto blocks = std::make_shared<const BlockDiagram>(diagram->blocks);
+    return StructureView{.of = of,
+                         .diagram = std::move(diagram->blocks),
+                         .inputs = {{"disturbance", diagram->d}},
+                         .outputs = {{"y", diagram->y}, {"u", diagram->u}},
+                         .curves = {sensitivity_at("loop", blocks, diagram->u, {})}};
 }
 
 }  // namespace tunewright::structure

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
 #include "engine/numerics/optimise/line_search.h"
+#include "engine/structure/drawing.h"
 #include "engine/structure/interaction_gains.h"
 #include "engine/structure/limited_search.h"
 #include "engine/structure/local_peaks.h"
@@ -456,6 +458,32 @@ Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const 
     auto figures = judge_interaction(plants, out.controllers);
     if (!figures) return figures.error();
     out.figures = std::move(*figures);
+    return out;
+}
+
+Expected<StructureView> interaction_view(const std::string& of, const PlantMatrix& plants,
+                                         const std::vector<IdealPid>& controllers, std::optional<double> limit) {
+    auto all = diagram_of(plants, controllers, all_loops(plants));
+    if (!all) return all.error();
+    StructureView out{.of = of, .diagram = all->blocks, .inputs = {}, .outputs = {}, .curves = {}};
+    const auto blocks = std::make_shared<const BlockDiagram>(std::move(all->blocks));
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+        const std::string number = std::to_string(i + 1);
+        out.inputs.push_back({"setpoint_" + number, all->r[i]});
+        out.inputs.push_back({"load_" + number, all->u[i]});
+        out.outputs.push_back({"y_" + number, all->y[i]});
+        out.outputs.push_back({"u_" + number, all->u[i]});
+        out.curves.push_back(sensitivity_at("loop_" + number, blocks, all->u[i], {}));
+    }
+    out.curves.push_back({"mu", limit, [blocks, errors = all->r](double omega) {
+                              const auto n = Index(errors.size());
+                              Response S(n, n);
+                              for (Index j = 0; j < n; ++j) {
+                                  const auto x = blocks->response({0, omega}, errors[std::size_t(j)]);
+                                  for (Index i = 0; i < n; ++i) S(i, j) = x[errors[std::size_t(i)]];
+                              }
+                              return structured_value(S);
+                          }});
     return out;
 }
 

@@ -2,12 +2,15 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "engine/loop/loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/number_text.h"
+#include "engine/structure/drawing.h"
 
 namespace tunewright::structure {
 namespace {
@@ -130,6 +133,30 @@ Expected<LevelResult> design_level(const LevelProblem& problem) {
     for (const double zeta : kFrontier) out.frontier.push_back(of_zeta(problem, zeta));
     out.frontier.push_back(judge_level(problem, gain_alone(problem), kInfinity));
     return out;
+}
+
+Expected<StructureView> level_view(const LevelProblem& problem, const LevelDesign& design) {
+    BlockDiagram all;
+    const int level = all.add_signal(), outflow = all.add_signal(), volume = all.add_signal();
+    // A higher level needs a larger outflow: direct action.
+    const auto pid = add_pid(all, to_parallel(IdealPid{.Kp = -design.Kc, .Ti = design.Ti}), level);
+    if (!pid) return pid.error();
+    const FlowLoop flow = problem.flow.value_or(FlowLoop{});
+    if (flow.T > 0)
+        all.add(pid->output, outflow,
+                std::move(*LinearPlant::make(Plant(TransferFunction{.num = {1}, .den = {flow.T, 1}, .L = flow.L}))));
+    else
+        all.add(pid->output, outflow, 1, flow.L);
+    all.add(outflow, volume, -1);
+    all.add(volume, level,
+            std::move(*LinearPlant::make(Plant(Zpk{.K = 1 / problem.area, .zeros = {}, .poles = {0.0}}))));
+    const auto blocks = std::make_shared<const BlockDiagram>(all);
+    return StructureView{.of = "design",
+                         .diagram = std::move(all),
+                         .inputs = {{"inflow", volume}},
+                         .outputs = {{"level", level}, {"outflow", outflow}},
+                         .step = problem.step,
+                         .curves = {sensitivity_at("loop", blocks, outflow, {})}};
 }
 
 }  // namespace tunewright::structure

@@ -5,6 +5,7 @@
 #include <complex>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/number_text.h"
 #include "engine/numerics/optimise/line_search.h"
+#include "engine/structure/drawing.h"
 #include "engine/structure/local_peaks.h"
 #include "engine/structure/loop_design.h"
 
@@ -203,6 +205,22 @@ double smallest_knob(const PredictorModel& m, const PredictorDesign& design, boo
     return std::max(by_Ms, by_error);
 }
 
+struct PidLoop {
+    BlockDiagram blocks;
+    int y = 0, u = 0, r = 0;
+};
+
+Expected<PidLoop> pid_loop(const LinearPlant& plant, const IdealPid& controller) {
+    PidLoop out;
+    out.y = out.blocks.add_signal();
+    const auto pid = add_pid(out.blocks, to_parallel(controller), out.y);
+    if (!pid) return pid.error();
+    out.u = pid->output;
+    out.r = pid->error;
+    out.blocks.add(out.u, out.y, plant);
+    return out;
+}
+
 /// The robust PID under the same limit on Ms.
 void compare_with_pid(const LinearPlant& plant, const PredictorDesign& design, const RunControl& control,
                       PredictorResult& out) {
@@ -214,18 +232,18 @@ void compare_with_pid(const LinearPlant& plant, const PredictorDesign& design, c
         return;
     }
     out.pid = *settings;
-    BlockDiagram loop;
-    const int y = loop.add_signal();
-    const auto pid = add_pid(loop, to_parallel(*settings), y);
-    if (!pid) return;
-    loop.add(pid->output, y, plant);
-    if (const auto figures = step_figures(loop, pid->output, y, pid->output, 0)) out.pid_IAE = figures->IAE;
+    const auto loop = pid_loop(plant, *settings);
+    if (!loop) return;
+    if (const auto figures = step_figures(loop->blocks, loop->u, loop->y, loop->u, 0)) out.pid_IAE = figures->IAE;
 }
 
-/// Figures after unit steps of load and set point. On an unstable model nothing is simulated: the model cancels its own
-/// past only up to rounding, and what is left grows without bound.
+/// An unstable model is not simulated: it cancels its own past only up to rounding, and what is left grows without
+/// bound.
+bool runs_away(const PredictorModel& model) { return !model.integrating && model.T < 0; }
+
+/// Figures after unit steps of load and set point.
 std::optional<Error> add_responses(const Diagram& diagram, const PredictorModel& model, PredictorFigures& out) {
-    if (!model.integrating && model.T < 0) {
+    if (runs_away(model)) {
         out.load = out.setpoint = OrReason<StepFigures>({}, "Responses are not simulated on an unstable model.");
         return std::nullopt;
     }
@@ -284,6 +302,31 @@ Expected<PredictorResult> design_predictor(const PredictorModel& model, const Li
     out.figures = std::move(*figures);
     compare_with_pid(plant, design, control, out);
     return out;
+}
+
+Expected<StructureView> predictor_view(const LinearPlant& plant, const PredictorController& controller,
+                                       std::optional<double> limit) {
+    auto all = diagram_of(&plant, controller);
+    if (!all) return all.error();
+    const auto blocks = std::make_shared<const BlockDiagram>(all->blocks);
+    StructureView out{.of = "design",
+                      .diagram = std::move(all->blocks),
+                      .inputs = {{"setpoint", all->v}, {"load", all->plant_input}},
+                      .outputs = {{"y", all->y}, {"u", all->u}},
+                      .curves = {sensitivity_at("loop", blocks, all->y, limit)}};
+    if (runs_away(controller.model)) out.inputs.clear();
+    return out;
+}
+
+Expected<StructureView> pid_view(const LinearPlant& plant, const IdealPid& controller) {
+    auto loop = pid_loop(plant, controller);
+    if (!loop) return loop.error();
+    const auto blocks = std::make_shared<const BlockDiagram>(loop->blocks);
+    return StructureView{.of = "pid",
+                         .diagram = std::move(loop->blocks),
+                         .inputs = {{"setpoint", loop->r}, {"load", loop->u}},
+                         .outputs = {{"y", loop->y}, {"u", loop->u}},
+                         .curves = {sensitivity_at("loop", blocks, loop->u, {})}};
 }
 
 }  // namespace tunewright::structure

@@ -230,7 +230,7 @@ private:
         if (const auto* problem = std::get_if<api::Problem>(&prepared))
             return write_problem(*problem, command_.output, name);
         const auto& job = std::get<api::PreparedJob>(prepared);
-        if (!job.check)
+        if (job.subject != api::JobSubject::check)
             return write_problem(http::problem(422,
                                                "This is not a request for a check: it has no loops. Use tunewright "
                                                "tune or range."),

@@ -50,6 +50,7 @@ export function madeLoop(tag, verdict, { period = 100, confidence = "sure", auto
       compressed: false,
       enough: verdict !== "insufficient-data",
       remarks: verdict === "insufficient-data" ? [{ code: "short-record", level: "bad", detail: "The record has 40 usable rows; a check needs at least 200." }] : [],
+      readings: [],
     },
     service: {
       automatic,

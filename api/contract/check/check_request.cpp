@@ -183,7 +183,8 @@ check::LoopQuestion question_of(GivenLoop loop, const Units& units, std::size_t 
         return out;
     }
     out.notes = std::move(loop.notes);
-    for (std::string& sentence : reading_sentences(read)) out.notes.push_back(std::move(sentence));
+    for (std::string& sentence : reading_faults(read)) out.notes.push_back(std::move(sentence));
+    out.readings = std::move(read.notes);
     out.record = std::move(read.record);
     return out;
 }

@@ -41,6 +41,8 @@ const Description<RecordQuality>& quality_contract() {
                    "True if the historian stored only some of the values.")
             .field("enough", &Q::enough, only_answered(boolean()), "False: no diagnosis is possible.")
             .field("remarks", &Q::remarks, list_of(answer(warning_contract())), "What is wrong with the record.")
+            .field("readings", &Q::readings, list_of(words()),
+                   "How the file was read, such as which column is the measurement.")
             .why_null("The range of the measurement is not given.");
         return d;
     }();

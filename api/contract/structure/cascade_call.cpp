@@ -206,7 +206,7 @@ const Description<CascadeRequest>& cascade_request_contract() {
         using R = CascadeRequest;
         using enum structure::Arrangement;
         Description<R> d("CascadeRequest", "Two controllers in series: design or judgement.");
-        add_labels(d);
+        add_structure_members(d, "cascade");
         d.field("inner", &R::inner, object(cascade_loop_contract()), "The inner loop.", {.required = true})
             .field("outer", &R::outer, object(cascade_loop_contract()), "The outer loop.", {.required = true})
             .field("arrangement", &R::arrangement,
@@ -230,6 +230,7 @@ const Description<CascadeAnswer>& cascade_answer_contract() {
     static const auto description = [] {
         using A = CascadeAnswer;
         Description<A> d("CascadeAnswer", "Controllers of a cascade and their figures.");
+        add_structure_name(d, "cascade");
         d.field(
              "inner", {}, [](const A& a, Writer& out) { write_loop(a, Side::inner, out); }, loop_schema(Side::inner),
              "The inner loop with the outer one in manual.")
@@ -264,8 +265,8 @@ const Description<CascadeAnswer>& cascade_answer_contract() {
                 },
                 "IAE of the single loop over that of the cascade.")
             .field("baseline", &A::baseline, maybe(answer(baseline_contract())), "The controllers in use.")
-            .field("verdict", &A::verdict, list_of(answer(conclusion_contract())), "Conclusions.")
             .why_null("Not computed.");
+        add_answer_members(d);
         return d;
     }();
     return description;

@@ -17,7 +17,7 @@ struct CascadePair {
     std::optional<IdealPid> inner, outer;
 };
 
-struct CascadeRequest : LabelledRequest {
+struct CascadeRequest : StructureRequest {
     CascadeLoop inner, outer;
     structure::Arrangement arrangement = structure::Arrangement::series;
     struct {
@@ -35,12 +35,11 @@ struct CascadeRequest : LabelledRequest {
 };
 const Description<CascadeRequest>& cascade_request_contract();
 
-struct CascadeAnswer {
+struct CascadeAnswer : StructureAnswer {
     structure::CascadeResult result;
     double limit_valve = 0;
     std::optional<structure::CascadeFigures> baseline;
     OrReason<structure::SingleLoop> single;
-    structure::Conclusions verdict;
 };
 const Description<CascadeAnswer>& cascade_answer_contract();
 

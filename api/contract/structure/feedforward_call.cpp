@@ -87,22 +87,27 @@ void write_wrong(const FeedforwardVariant& v, Writer& out) {
     out.end_object();
 }
 
+const Words<structure::FeedforwardKind>& kind_words() {
+    using enum structure::FeedforwardKind;
+    static const Words<structure::FeedforwardKind> words{{"none", none},
+                                                         {"static", gain},
+                                                         {"inverse", inverse},
+                                                         {"guzman_hagglund", rule},
+                                                         {"optimum", optimum},
+                                                         {"given", given}};
+    return words;
+}
+
 const Description<FeedforwardVariant>& variant_contract() {
     static const auto description = [] {
         using V = FeedforwardVariant;
-        using enum structure::FeedforwardKind;
         const auto figure_of = [](double structure::StepFigures::*member) {
             return
                 [member](const V& v, Writer& out) { v.why_not.empty() ? out.number(v.figures.*member) : out.null(); };
         };
         Description<V> d("FeedforwardVariant", "A compensator and its figures after a unit step of the disturbance.");
         d.field("kind", &V::kind,
-                only_answered(choice<structure::FeedforwardKind>({{"none", none},
-                                                                  {"static", gain},
-                                                                  {"inverse", inverse},
-                                                                  {"guzman_hagglund", rule},
-                                                                  {"optimum", optimum},
-                                                                  {"given", given}})),
+                only_answered(choice<structure::FeedforwardKind>(kind_words())),
                 "none: feedback alone; static: the gain alone; inverse: lead, lag and delay of both plants; "
                 "guzman_hagglund: the rule of 2011; optimum: the least IAE.")
             .field(
@@ -134,11 +139,13 @@ const Description<FeedforwardVariant>& variant_contract() {
 
 }  // namespace
 
+std::string name_of(structure::FeedforwardKind kind) { return word_of(kind_words(), kind); }
+
 const Description<FeedforwardRequest>& feedforward_request_contract() {
     static const auto description = [] {
         using R = FeedforwardRequest;
         Description<R> d("FeedforwardRequest", "A loop with feedback, and a disturbance that is measured.");
-        add_labels(d);
+        add_structure_members(d, "feedforward");
         d.field("plant", &R::plant, linear_plant(), "From u to y.", {.required = true})
             .field("disturbance", &R::disturbance, linear_plant(), "From the measured disturbance to y.",
                    {.required = true})
@@ -162,6 +169,7 @@ const Description<FeedforwardAnswer>& feedforward_answer_contract() {
     static const auto description = [] {
         using A = FeedforwardAnswer;
         Description<A> d("FeedforwardAnswer", "Compensators and their figures with the feedback in place.");
+        add_structure_name(d, "feedforward");
         d.field("feedback", &A::feedback, ideal_controller(), "The loop's controller.")
             .field(
                 "variants", {},
@@ -171,8 +179,8 @@ const Description<FeedforwardAnswer>& feedforward_answer_contract() {
                    "Dead time of the plant less that of the disturbance: above 0 no compensator is exact.",
                    {.unit = "time"})
             .field("peak_bound", {}, [](const A& a, Writer& out) { out.number(a.result.peak_bound); }, number().schema,
-                   "Magnitude of the error that no feedforward avoids.", {.unit = "y"})
-            .field("verdict", &A::verdict, list_of(answer(conclusion_contract())), "Conclusions.");
+                   "Magnitude of the error that no feedforward avoids.", {.unit = "y"});
+        add_answer_members(d);
         return d;
     }();
     return description;

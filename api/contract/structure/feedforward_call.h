@@ -11,7 +11,7 @@ struct FeedbackWish {
     std::optional<structure::LoopDesign> tune;
 };
 
-struct FeedforwardRequest : LabelledRequest {
+struct FeedforwardRequest : StructureRequest {
     std::optional<LinearPlant> plant, disturbance;
     FeedbackWish feedback;
     struct {
@@ -22,10 +22,12 @@ struct FeedforwardRequest : LabelledRequest {
 };
 const Description<FeedforwardRequest>& feedforward_request_contract();
 
-struct FeedforwardAnswer {
+/// The name of a variant.
+std::string name_of(structure::FeedforwardKind kind);
+
+struct FeedforwardAnswer : StructureAnswer {
     IdealPid feedback;
     structure::FeedforwardResult result;
-    structure::Conclusions verdict;
 };
 const Description<FeedforwardAnswer>& feedforward_answer_contract();
 

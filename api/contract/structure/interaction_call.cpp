@@ -245,7 +245,7 @@ const Description<InteractionRequest>& interaction_request_contract() {
         matrix.schema = matrix_schema;
         matrix.skip = [](const structure::PlantMatrix& plant) { return plant.empty(); };
         Description<R> d("InteractionRequest", "Two or three loops whose outputs depend on each other's inputs.");
-        add_labels(d);
+        add_structure_members(d, "interaction");
         d.field("plant", &R::plant, matrix,
                 "A row for each output, a column for each input; 0 or null: a path that is not there.",
                 {.required = true})
@@ -278,6 +278,7 @@ const Description<InteractionAnswer>& interaction_answer_contract() {
     static const auto description = [] {
         using A = InteractionAnswer;
         Description<A> d("InteractionAnswer", "Interaction, pairings, and controllers with their figures.");
+        add_structure_name(d, "interaction");
         d.field(
              "rga", {}, [](const A& a, Writer& out) { write_table(a.gains.relative, out); }, table_schema,
              "Relative gains at steady state: a row for each output, a column for each input.")
@@ -302,8 +303,8 @@ const Description<InteractionAnswer>& interaction_answer_contract() {
                    "not stable with the others in manual.")
             .field("F_blt", &A::F, figure(), "Detuning factor of Luyben's tuning.")
             .field("compared", &A::compared, list_of(answer(compared_contract())), "Controllers for comparison.")
-            .field("verdict", &A::verdict, list_of(answer(conclusion_contract())), "Conclusions.")
             .why_null(kUnstableLoops);
+        add_answer_members(d);
         return d;
     }();
     return description;

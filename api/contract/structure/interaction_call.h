@@ -11,7 +11,7 @@ struct InteractionControllers {
     std::vector<std::optional<IdealPid>> given;
 };
 
-struct InteractionRequest : LabelledRequest {
+struct InteractionRequest : StructureRequest {
     structure::PlantMatrix plant;
     std::optional<std::vector<int>> pairing;  ///< of each output the input, from 1
     InteractionControllers controllers;
@@ -37,7 +37,7 @@ struct ComparedControllers {
     std::string why;  ///< there are none, for this reason
 };
 
-struct InteractionAnswer {
+struct InteractionAnswer : StructureAnswer {
     structure::GainAnalysis gains;
     std::size_t chosen = 0;  ///< of gains.pairings
     std::vector<IdealPid> controllers;
@@ -45,7 +45,6 @@ struct InteractionAnswer {
     double cost = 0;
     Figure F;  ///< of the BLT settings
     std::vector<ComparedControllers> compared;
-    structure::Conclusions verdict;
 };
 const Description<InteractionAnswer>& interaction_answer_contract();
 

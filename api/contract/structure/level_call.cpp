@@ -96,7 +96,7 @@ const Description<LevelRequest>& level_request_contract() {
             {{"rate", rate}, {"no_outflow_overshoot", no_overshoot}, {"zeta", structure::LevelAim::zeta}});
         Description<R> d("LevelRequest",
                          "A level that smooths flows: a vessel, its largest step, the room of the level.");
-        add_labels(d);
+        add_structure_members(d, "level");
         d.field("volume", into(&LevelProblem::area, positive), {}, positive.schema,
                 "Volume per unit of level, in the units of flow, time and level.",
                 {.required = true, .unit = "u time/y"})
@@ -124,6 +124,7 @@ const Description<LevelAnswer>& level_answer_contract() {
     static const auto description = [] {
         using A = LevelAnswer;
         Description<A> d("LevelAnswer", "A level controller, its figures, and other dampings.");
+        add_structure_name(d, "level");
         d.field(
              "design", {}, [](const A& a, Writer& out) { level_design_contract().write(a.result.design, out); },
              [](SchemaBook& book) { return level_design_contract().schema(book); }, "The controller.")
@@ -140,8 +141,8 @@ const Description<LevelAnswer>& level_answer_contract() {
                 "frontier", {},
                 [](const A& a, Writer& out) { list_of(answer(level_design_contract())).write(a.result.frontier, out); },
                 list_of(answer(level_design_contract())).schema,
-                "Designs over the damping, then proportional action alone; each uses the whole room.")
-            .field("verdict", &A::verdict, list_of(answer(conclusion_contract())), "Conclusions.");
+                "Designs over the damping, then proportional action alone; each uses the whole room.");
+        add_answer_members(d);
         return d;
     }();
     return description;

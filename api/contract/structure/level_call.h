@@ -5,14 +5,13 @@
 
 namespace tunewright::api {
 
-struct LevelRequest : LabelledRequest {
+struct LevelRequest : StructureRequest {
     structure::LevelProblem problem;
 };
 const Description<LevelRequest>& level_request_contract();
 
-struct LevelAnswer {
+struct LevelAnswer : StructureAnswer {
     structure::LevelResult result;
-    structure::Conclusions verdict;
 };
 const Description<LevelAnswer>& level_answer_contract();
 

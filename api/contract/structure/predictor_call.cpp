@@ -105,7 +105,7 @@ const Description<PredictorRequest>& predictor_request_contract() {
         const auto Ms = number({.exclusive_minimum = 1, .exclusive_maximum = 2});
         const auto error = maybe(number({.exclusive_minimum = 0, .maximum = 1}));
         Description<R> d("PredictorRequest", "A loop with a long dead time.");
-        add_labels(d);
+        add_structure_members(d, "predictor");
         d.field("plant", &R::plant, linear_plant(), "The plant.", {.required = true})
             .field("model", &R::model, linear_plant(),
                    "The model in the controller, of first order or an integrator; default: the plant.")
@@ -136,6 +136,7 @@ const Description<PredictorAnswer>& predictor_answer_contract() {
     static const auto description = [] {
         using A = PredictorAnswer;
         Description<A> d("PredictorAnswer", "A predictor, its figures, and the PID of the same Ms.");
+        add_structure_name(d, "predictor");
         const auto setting = [](double PredictorController::*member) {
             return [member](const A& a, Writer& out) { out.number(a.controller.*member); };
         };
@@ -170,8 +171,8 @@ const Description<PredictorAnswer>& predictor_answer_contract() {
                 object(step_view_contract()).schema, "After a unit step of the set point.")
             .field("pid", &A::pid, or_reason(ideal_controller()), "The robust PID under the same limit on Ms.")
             .field("pid_IAE", &A::pid_IAE, figure(), "IAE of a unit load with it.", {.unit = "y time/u"})
-            .field("verdict", &A::verdict, list_of(answer(conclusion_contract())), "Conclusions.")
             .why_null("Not found.");
+        add_answer_members(d);
         return d;
     }();
     return description;

@@ -5,7 +5,7 @@
 
 namespace tunewright::api {
 
-struct PredictorRequest : LabelledRequest {
+struct PredictorRequest : StructureRequest {
     std::optional<LinearPlant> plant, model;
     structure::PredictorDesign design;
     std::optional<structure::PredictorController> controller;  ///< its model is that of the request
@@ -14,12 +14,11 @@ struct PredictorRequest : LabelledRequest {
 };
 const Description<PredictorRequest>& predictor_request_contract();
 
-struct PredictorAnswer {
+struct PredictorAnswer : StructureAnswer {
     structure::PredictorController controller;
     structure::PredictorFigures figures;
     OrReason<IdealPid> pid;
     Figure pid_IAE;
-    structure::Conclusions verdict;
 };
 const Description<PredictorAnswer>& predictor_answer_contract();
 

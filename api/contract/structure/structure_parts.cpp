@@ -4,9 +4,12 @@
 
 #include "api/contract/controller.h"
 #include "api/contract/plant/typed.h"
+#include "api/contract/product/conversion.h"
 
 namespace tunewright::api {
 namespace {
+
+constexpr std::size_t kMostControllers = 3;
 
 bool is_uncertain(const Plant& plant) {
     return std::visit([](const auto& one) { return !one.uncertainty.empty(); }, plant);
@@ -147,6 +150,162 @@ void write_figures(Writer& out, std::initializer_list<std::pair<const char*, Fig
         out.end_object();
     }
     out.end_object();
+}
+
+std::string structure_of(const Json& request) {
+    if (!request.is_object() || !request.contains("structure") || !request["structure"].is_string()) return {};
+    return request["structure"];
+}
+
+namespace {
+
+struct DrawingWish {
+    int points = 200;
+};
+
+const Description<DrawingWish>& drawing_wish_contract() {
+    static const auto description = [] {
+        Description<DrawingWish> d("StructureEvaluate", "What is drawn.");
+        d.field("points", &DrawingWish::points, trace_points(), "Points of each series; 0: no series.");
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace
+
+Codec<StructureRequest> drawing_wish() {
+    const auto inner = object(drawing_wish_contract());
+    Codec<StructureRequest> codec;
+    codec.read = [inner](const Json& value, StructureRequest& request, Reader& reader) {
+        DrawingWish wish;
+        inner.read(value, wish, reader);
+        request.points = wish.points;
+    };
+    codec.schema = inner.schema;
+    return codec;
+}
+
+Codec<StructureRequest> devices_wish() {
+    const auto one = object(implement_contract());
+    const auto several = list_of(one, 1, kMostControllers);
+    Codec<StructureRequest> codec;
+    codec.read = [one, several](const Json& value, StructureRequest& request, Reader& reader) {
+        if (value.is_array()) return several.read(value, request.implement, reader);
+        request.implement.emplace_back();
+        one.read(value, request.implement.back(), reader);
+    };
+    codec.schema = [one, several](SchemaBook& book) {
+        return Json{{"oneOf", Json::array({one.schema(book), several.schema(book)})}};
+    };
+    return codec;
+}
+
+void resolve_devices(StructureRequest& request, Reader& reader) {
+    const std::string time = request.time_unit();
+    const Reader::At at(reader, "implement");
+    for (std::size_t i = 0; i < request.implement.size(); ++i) {
+        const GivenDevice& given = request.implement[i];
+        if (given.product && !seconds_per_time(time, reader)) return;
+        auto device = device_of(given, time, reader);
+        if (!device) return;
+        check_needs(*device, reader);
+        request.devices.push_back(std::move(*device));
+    }
+}
+
+const Description<StructureTyping>& structure_typing_contract() {
+    static const auto description = [] {
+        using T = StructureTyping;
+        Description<T> d("StructureTyping", "What is typed for one controller of a structure.");
+        d.field("loop", &T::loop, words(), "The controller.")
+            .field(
+                "typing", {},
+                [](const T& t, Writer& out) {
+                    if (!t.fitted) return out.null();
+                    settings_answer_contract().write({t.fitted->product, t.fitted->settings, t.fitted->typed,
+                                                      t.fitted->controller, t.fitted->notes, t.fitted->context, {}},
+                                                     out);
+                },
+                [](SchemaBook& book) {
+                    return or_null(answer(settings_answer_contract()).schema)(book);
+                },
+                "The settings, as POST /v1/controllers/{id}/settings answers.")
+            .field(
+                "why", {}, [](const T& t, Writer& out) { out.text(t.fitted.why); }, words().schema,
+                "Why there are none.", {}, [](const T& t) { return bool(t.fitted); });
+        return d;
+    }();
+    return description;
+}
+
+void write_responses(const structure::StructureDrawing& drawing, Writer& out) {
+    out.begin_array();
+    for (const structure::DrawnResponse& response : drawing.responses) {
+        out.begin_object();
+        out.key("of").text(response.of);
+        out.key("input").text(response.input);
+        out.key("t").numbers(response.t);
+        out.key("signals").begin_array();
+        for (std::size_t k = 0; k < response.names.size(); ++k) {
+            out.begin_object();
+            out.key("name").text(response.names[k]);
+            out.key("values").numbers(response.values[k]);
+            out.end_object();
+        }
+        out.end_array();
+        out.end_object();
+    }
+    out.end_array();
+}
+
+namespace {
+
+Json series_schema() { return {{"type", "array"}, {"items", {{"type", "number"}}}}; }
+
+Json list_schema(const Json& properties) {
+    Json required = Json::array();
+    for (const auto& [name, schema] : properties.items()) required.push_back(name);
+    return {{"type", "array"}, {"items", {{"type", "object"}, {"properties", properties}, {"required", required}}}};
+}
+
+}  // namespace
+
+Json responses_schema(SchemaBook&) {
+    const Json text{{"type", "string"}};
+    return list_schema({{"of", text},
+                        {"input", text},
+                        {"t", series_schema()},
+                        {"signals", list_schema({{"name", text}, {"values", series_schema()}})}});
+}
+
+void write_curves(const structure::StructureDrawing& drawing, Writer& out) {
+    out.begin_object();
+    out.key("omega").numbers(drawing.omega);
+    out.key("curves").begin_array();
+    for (const structure::DrawnCurve& curve : drawing.curves) {
+        out.begin_object();
+        out.key("of").text(curve.of);
+        out.key("loop").text(curve.loop);
+        out.key("limit");
+        curve.limit ? out.number(*curve.limit) : out.null();
+        out.key("values").numbers(curve.values);
+        out.end_object();
+    }
+    out.end_array();
+    out.end_object();
+}
+
+Json curves_schema(SchemaBook&) {
+    const Json text{{"type", "string"}};
+    return {{"type", "object"},
+            {"properties",
+             {{"omega", series_schema()},
+              {"curves", list_schema({{"of", text},
+                                      {"loop", text},
+                                      {"limit", {{"type", {"number", "null"}}}},
+                                      {"values", series_schema()}})}}},
+            {"required", {"omega", "curves"}}};
 }
 
 }  // namespace tunewright::api

@@ -7,18 +7,111 @@
 #include <utility>
 #include <vector>
 
+#include "api/contract/device/device.h"
 #include "api/contract/request.h"
 #include "engine/structure/conclusions.h"
+#include "engine/structure/drawing.h"
 #include "engine/structure/loop_design.h"
 #include "engine/structure/step_figures.h"
 
 namespace tunewright::api {
 
-/// The labels of a request.
-struct LabelledRequest {
+/// The members of every request about a structure, which may also be a job.
+struct StructureRequest : JobTerms {
     std::optional<std::string> name;
     std::optional<Units> units;
+    int points = 200;  ///< of each series of the drawing; 0: none
+    std::vector<GivenDevice> implement;
+    std::vector<device::DeviceModel> devices;  ///< of `implement`: one for each controller, or one for all
+
+    std::string time_unit() const { return units.value_or(Units{}).time_or_default(); }
 };
+
+/// A controller of an answer as it is typed into the user's product.
+struct StructureTyping {
+    std::string loop;
+    OrReason<device::Fitted> fitted;
+};
+
+/// The members of every answer.
+struct StructureAnswer {
+    std::optional<Units> units;
+    std::string request_hash;  ///< "" for a call
+    bool partial = false;      ///< stopped: the best so far
+    structure::StructureDrawing drawing;
+    std::vector<StructureTyping> settings;
+    structure::Conclusions verdict;
+};
+
+/// The member `structure` of a request for a job, "" if it has none.
+std::string structure_of(const Json& request);
+
+/// {"code", "figures"}.
+const Description<structure::Conclusion>& conclusion_contract();
+const Description<StructureTyping>& structure_typing_contract();
+
+void write_responses(const structure::StructureDrawing& drawing, Writer& out);
+Json responses_schema(SchemaBook& book);
+void write_curves(const structure::StructureDrawing& drawing, Writer& out);
+Json curves_schema(SchemaBook& book);
+
+/// Devices from `implement`; faults are at `implement`.
+void resolve_devices(StructureRequest& request, Reader& reader);
+
+/// The member `structure`, which tells a job's request and its result apart from others.
+template <class T>
+void add_structure_name(Description<T>& d, const char* structure) {
+    d.field(
+        "structure",
+        [structure](const Json& value, T&, Reader& reader) {
+            if (value != structure) reader.fault("structure is " + shown(value) + "; here it must be " + structure + ".");
+        },
+        [structure](const T&, Writer& out) { out.text(structure); },
+        [structure](SchemaBook&) {
+            return Json{{"const", structure}};
+        },
+        "The structure.");
+}
+
+Codec<StructureRequest> drawing_wish();  ///< {"points": 200}
+Codec<StructureRequest> devices_wish();  ///< a device, or one for each controller
+
+/// The members of every request; the check of the devices' needs is that of the structure.
+template <class Request>
+void add_structure_members(Description<Request>& d, const char* structure) {
+    add_structure_name(d, structure);
+    add_labels(d);
+    d.field(
+         "evaluate", [wish = drawing_wish()](const Json& v, Request& r, Reader& reader) { wish.read(v, r, reader); },
+         {}, drawing_wish().schema, "points of each series of the drawing, default 200; 0: none.")
+        .field(
+            "implement", [wish = devices_wish()](const Json& v, Request& r, Reader& reader) { wish.read(v, r, reader); },
+            {}, devices_wish().schema,
+            "The user's controller as for one loop; or a list, one for each controller in the order of the answer.")
+        .check([](const Json&, Request& r, Reader& reader) { resolve_devices(r, reader); });
+    add_terms(d);
+}
+
+/// The members of every answer that follow its own.
+template <class Answered>
+void add_answer_members(Description<Answered>& d) {
+    using A = StructureAnswer;
+    d.field("partial", &A::partial, unless<bool>(boolean(), [](bool partial) { return !partial; }),
+            "true: the search was stopped; this is the best so far.")
+        .field("verdict", &A::verdict, list_of(answer(conclusion_contract())), "Conclusions.")
+        .field("settings", &A::settings,
+               unless<std::vector<StructureTyping>>(list_of(answer(structure_typing_contract())),
+                                                  [](const auto& all) { return all.empty(); }),
+               "With implement: what is typed into the user's controller.")
+        .field("responses", {}, [](const Answered& a, Writer& out) { write_responses(a.drawing, out); },
+               responses_schema, "Series over time; the steps have the size 1, or the largest step of a level.")
+        .field("sensitivities", {}, [](const Answered& a, Writer& out) { write_curves(a.drawing, out); }, curves_schema,
+               "|S| over frequency, of the loop broken at one place, and mu.")
+        .field("units", &A::units, only_answered(maybe(object(units_contract()))), "As in the request.")
+        .field("request_hash", &A::request_hash,
+               unless<std::string>(words(), [](const std::string& hash) { return hash.empty(); }),
+               "Of a job: SHA-256 of the request in its canonical form.");
+}
 
 /// One linear plant, as its object or a text, ready for computing. Uncertainty is refused.
 Codec<std::optional<LinearPlant>> linear_plant();
@@ -48,8 +141,5 @@ Figure known_unless(double value, const std::string& why);
 /// An object of figures, with the reasons of those that are not known, and its schema.
 void write_figures(Writer& out, std::initializer_list<std::pair<const char*, Figure>> figures);
 Json figures_schema(std::initializer_list<const char*> names);
-
-/// {"code", "figures"}.
-const Description<structure::Conclusion>& conclusion_contract();
 
 }  // namespace tunewright::api

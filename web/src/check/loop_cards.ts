@@ -64,6 +64,7 @@ export function causeCard(shown: LoopShown): HTMLElement {
     others ? h("p", {}, `Not excluded: ${others}.`) : "",
     row.change ? part(`Since ${content.since}`, [h("li", {}, changeWords(row.change))]) : "",
     part("About the record", remarks),
+    part("How the file was read", quality.readings.map((sentence) => h("li", {}, withMinus(sentence)))),
     part("Other loops", relations),
   );
 }

@@ -1,0 +1,101 @@
+#include "engine/structure/drawing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "engine/blocks/diagram_loop.h"
+#include "engine/blocks/diagram_response.h"
+#include "engine/structure/local_peaks.h"
+
+namespace tunewright::structure {
+namespace {
+
+constexpr double kTolerance = 1e-4, kSettled = 3e-3;  // of a drawing
+constexpr int kMaxSteps = 20000;
+constexpr double kBelowCorners = 0.02, kAboveCorners = 5;
+
+struct Answered {
+    const StructureView* view;
+    std::vector<DiagramResponse> to;  ///< each input
+};
+
+std::optional<Answered> answered(const StructureView& view) {
+    if (!count_unstable_poles(view.diagram).stable()) return std::nullopt;
+    Answered out{&view, {}};
+    for (const NamedSignal& input : view.inputs) {
+        auto response = DiagramResponse::of(view.diagram, {{input.signal, view.step}},
+                                            {.tolerance = kTolerance, .settled = kSettled, .max_steps = kMaxSteps});
+        if (!response) return std::nullopt;
+        out.to.push_back(std::move(*response));
+    }
+    return out;
+}
+
+std::vector<double> evenly(double until, int points) {
+    std::vector<double> t;
+    for (int i = 0; i < points; ++i) t.push_back(until * i / (points - 1));
+    return t;
+}
+
+void add_responses(const std::vector<Answered>& all, int points, StructureDrawing& out) {
+    std::map<std::string, double> until;
+    for (const Answered& one : all)
+        for (std::size_t i = 0; i < one.to.size(); ++i) {
+            double& end = until[one.view->inputs[i].name];
+            end = std::max(end, one.to[i].end());
+        }
+    for (const Answered& one : all)
+        for (std::size_t i = 0; i < one.to.size(); ++i) {
+            const NamedSignal& input = one.view->inputs[i];
+            DrawnResponse drawn{one.view->of, input.name, evenly(until[input.name], points), {}, {}};
+            for (const NamedSignal& output : one.view->outputs) {
+                drawn.names.push_back(output.name);
+                drawn.values.push_back(one.to[i].sampled(output.signal, drawn.t));
+            }
+            out.responses.push_back(std::move(drawn));
+        }
+}
+
+/// The frequencies from far below the corners of all blocks to above them.
+std::vector<double> frequencies(const std::vector<Answered>& all, int points) {
+    std::vector<const LinearPlant*> plants;
+    for (const Answered& one : all)
+        for (const Block& block : one.view->diagram.blocks()) plants.push_back(&block.plant);
+    const std::vector<double> grid = frequencies_around(plants, kBelowCorners, kAboveCorners, 1);
+    std::vector<double> out;
+    const double ratio = grid.back() / grid.front();
+    for (int i = 0; i < points; ++i) out.push_back(grid.front() * std::pow(ratio, double(i) / (points - 1)));
+    return out;
+}
+
+}  // namespace
+
+PeakCurve sensitivity_at(const std::string& loop, const std::shared_ptr<const BlockDiagram>& diagram, int signal,
+                         std::optional<double> limit) {
+    return {loop, limit, [diagram, signal](double omega) {
+                return std::abs(diagram->response({0, omega}, signal)[signal]);
+            }};
+}
+
+StructureDrawing drawing_of(const std::vector<StructureView>& views, int points) {
+    StructureDrawing out;
+    if (points < 2) return out;
+    std::vector<Answered> all;
+    for (const StructureView& view : views)
+        if (auto one = answered(view)) all.push_back(std::move(*one));
+    if (all.empty()) return out;
+    add_responses(all, points, out);
+    out.omega = frequencies(all, points);
+    for (const Answered& one : all)
+        for (const PeakCurve& curve : one.view->curves) {
+            DrawnCurve drawn{one.view->of, curve.loop, curve.limit, {}};
+            for (const double omega : out.omega) drawn.values.push_back(curve.magnitude(omega));
+            out.curves.push_back(std::move(drawn));
+        }
+    return out;
+}
+
+}  // namespace tunewright::structure

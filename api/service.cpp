@@ -237,6 +237,16 @@ std::variant<PreparedJob, Problem> prepare_range(std::string_view body, const Jo
     return prepared_as(range_request_contract(), std::get<Json>(parsed), limits, [&] { return compact(body); });
 }
 
+std::variant<PreparedJob, Problem> prepare_structure(std::string_view body, const std::string& structure) {
+    auto parsed = parse(body);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
+    auto& value = std::get<Json>(parsed);
+    if (value.is_object() && !value.contains("structure")) value["structure"] = structure;
+    return with_contract(Json{{"structure", structure}}, [&](const auto& contract) {
+        return prepared_as(contract, value, {}, [&] { return value.dump(); });
+    });
+}
+
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits) {
     auto parsed = parse(body);
     if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;

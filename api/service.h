@@ -52,6 +52,9 @@ std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobL
 /// Reads and checks a request that must be about a range, whatever its members are.
 std::variant<PreparedJob, Problem> prepare_range(std::string_view body, const JobLimits& limits = {});
 
+/// Reads and checks a request about this structure, "cascade"; its member `structure` may be left out.
+std::variant<PreparedJob, Problem> prepare_structure(std::string_view body, const std::string& structure);
+
 /// Reads and checks an entry of a batch, which has no traces unless it asks for them: evaluate.points is 0 by default,
 /// also in the stored request. 422 if it has terms that only a whole batch can have.
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits = {});

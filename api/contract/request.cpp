@@ -240,6 +240,7 @@ const Description<JobRequest>& job_contract() {
              check_source(value, kJobSources, "a recorded test, or only an ultimate gain and period", reader);
              check_ultimate(value, request, reader);
          })
+            .refuse("structure", "structure must be cascade, level, feedforward, interaction or predictor.")
             .example({{"name", "TIC-101"},
                       {"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
                       {"tune",

@@ -6,6 +6,7 @@
 #include "api/report/check_words.h"
 #include "api/report/figures.h"
 #include "api/report/sections.h"
+#include "api/report/structure_words.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {
@@ -34,6 +35,16 @@ std::string check_report(ChosenEntry& found, const ReportWords& words) {
     const ReportInput subject = subject_of_check(document);
     const std::string title = title_of(subject, said, "loop check", "Loop check");
     return page(title, head_of(subject, said, title, check_summary(subject.result.value())) + check_sections(subject) +
+                           request_section(document.at("request"), said.origin));
+}
+
+std::string structure_report(ChosenEntry& found, const ReportWords& words) {
+    const ReportWords said = said_of(found, words);
+    const Json document = document_of(found);
+    const ReportInput subject = subject_of_structure(document);
+    const std::string title = report_title(subject, said);
+    return page(title, head_of(subject, said, title, structure_title(text_at(subject.result.at("structure")))) +
+                           structure_sections(subject) + signatures() +
                            request_section(document.at("request"), said.origin));
 }
 
@@ -69,6 +80,7 @@ std::variant<std::string, Problem> report_html(const ResultSource& source, std::
     if (auto problem = read_result(source, found)) return *std::move(problem);
     if (index.empty() && is_of_range(found.result)) return range_report(found, words);
     if (index.empty() && is_of_check(found.result)) return check_report(found, words);
+    if (index.empty() && is_of_structure(found.result)) return structure_report(found, words);
     return about_entry(found, index, words, full_report);
 } catch (const Json::exception&) {  // a file that only resembles a result: its members have other types
     return not_a_result();

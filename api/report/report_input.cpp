@@ -87,6 +87,8 @@ ReportInput subject_of_range(const Json& document) { return subject_at(document,
 
 ReportInput subject_of_check(const Json& document) { return subject_at(document, "loops"); }
 
+ReportInput subject_of_structure(const Json& document) { return subject_at(document, ""); }
+
 ReportInput with_units(const ReportInput& subject, const Json& units) {
     ReportInput out = subject;
     if (!units.is_object()) return out;

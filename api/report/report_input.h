@@ -48,6 +48,9 @@ ReportInput subject_of_range(const Json& document);
 /// The subject for the document's check: its entry is the list of loops.
 ReportInput subject_of_check(const Json& document);
 
+/// The subject for the document's structure: its entry is the whole result.
+ReportInput subject_of_structure(const Json& document);
+
 /// The same with the labels of these units, if they are an object.
 ReportInput with_units(const ReportInput& subject, const Json& units);
 

@@ -51,6 +51,8 @@ Html assumptions_section(const ReportInput& subject);
 Html range_sections(const ReportInput& subject);
 /// The report of a check without its head and its request: the plant's work list, then a page for each loop.
 Html check_sections(const ReportInput& subject);
+/// The report of a structure without its head and its request.
+Html structure_sections(const ReportInput& subject);
 /// The whole request, as a file to save, as text and as a command. `origin`: of the service.
 Html request_section(const Json& request, const std::string& origin);
 

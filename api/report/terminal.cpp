@@ -13,6 +13,7 @@
 #include "api/report/figures.h"
 #include "api/report/plot.h"
 #include "api/report/sections.h"
+#include "api/report/structure_words.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {
@@ -414,6 +415,31 @@ std::string reasons_of(const Json& answer, const std::vector<std::size_t>& order
 }
 
 }  // namespace
+
+std::string structure_text(std::string_view answer) try {
+    const Json value = parsed_or_null(answer);
+    if (!is_of_structure(value)) return std::string(answer) + "\n";
+    std::string out;
+    if (const auto controllers = structure_controllers(value); !controllers.empty()) {
+        Columns table({"controller", "Kp", "Ti", "Td", "Tf"}, 1);
+        for (const auto& [name, pointer] : controllers)
+            table.row({name, number(at(value, (pointer + "/Kp").c_str())), number(at(value, (pointer + "/Ti").c_str())),
+                       number(at(value, (pointer + "/Td").c_str())),
+                       number(at(value, (pointer + "/filter/Tf").c_str()))});
+        out += table.text() + "\n";
+    }
+    if (const Json design = value.value("design", Json()); design.is_object())
+        out += "Kc " + number(design.value("Kc", Json())) + ", Ti " + number(design.value("Ti", Json())) + "\n\n";
+    Columns figures({"figure", "value"}, 1);
+    for (const StructureFigure& one : structure_figures(value))
+        if (const Json::json_pointer place(one.pointer); value.contains(place))
+            figures.row({one.name, number(value.at(place))});
+    out += figures.text() + "\n";
+    for (const Json& conclusion : value.value("verdict", Json::array())) out += conclusion_sentence(conclusion) + "\n";
+    return out;
+} catch (const Json::exception&) {
+    return std::string(answer) + "\n";
+}
 
 std::string check_text(std::string_view answer) try {
     const Json value = parsed_or_null(answer);

@@ -23,6 +23,9 @@ std::string range_text(std::string_view result);
 /// returned unchanged.
 std::string check_text(std::string_view answer);
 
+/// An answer about a structure: its conclusions, controllers and figures. Any other text is returned unchanged.
+std::string structure_text(std::string_view answer);
+
 /// An answer of identify: the candidates with their fits, the chosen one's parameters with standard errors, warnings.
 std::string model_text(std::string_view answer);
 

@@ -125,15 +125,16 @@ int tune(const TuneCommand& command) {
     return written != 0 ? written : draw(command, answer.json, asked);
 }
 
-int range(const RangeCommand& command) {
+int answer_request(const RequestCommand& command) {
     std::string text;
     if (!read_input(command.file, text)) return write_problem(unreadable(command.file), command.output);
-    const auto prepared = api::prepare_range(text);
+    const bool about_range = command.structure.empty();
+    const auto prepared = about_range ? api::prepare_range(text) : api::prepare_structure(text, command.structure);
     if (const auto* problem = std::get_if<api::Problem>(&prepared))
         return write_problem(*problem, command.output, command.file);
     const Tuned answer = tuned(std::get<api::PreparedJob>(prepared));
     if (!answer.succeeded) return write_problem(answer.json, command.output, command.file);
-    return write_answer(answer.json, command.output, api::range_text);
+    return write_answer(answer.json, command.output, about_range ? api::range_text : api::structure_text);
 }
 
 int identify(const IdentifyCommand& command) {

@@ -24,11 +24,13 @@ struct TuneCommand {
 };
 int tune(const TuneCommand& command);
 
-struct RangeCommand {
-    std::string file;  ///< a request about a range, as POST /v1/jobs takes it; "-": standard input
+/// `tunewright range`, and with `structure` `tunewright cascade` and its like.
+struct RequestCommand {
+    std::string file;       ///< a request as POST /v1/jobs takes it; "-": standard input
+    std::string structure;  ///< "": about a range
     OutputWords output;
 };
-int range(const RangeCommand& command);
+int answer_request(const RequestCommand& command);
 
 struct IdentifyCommand {
     std::string file;  ///< a CSV file or a log, or a request of POST /v1/identify; "-": standard input

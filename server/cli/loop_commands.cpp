@@ -118,6 +118,15 @@ void add_code_words(CLI::App& app, api::CodeWords& words) {
     code_word(app, "y0", words, "y at the operating point");
 }
 
+void add_request_command(CommandTree& tree, const std::string& name, const std::string& structure,
+                         const std::string& help, const std::string& help_of_file) {
+    RequestCommand& words = tree.keep<RequestCommand>();
+    words.structure = structure;
+    CLI::App& app = tree.add(name, help, [&words] { return answer_request(words); });
+    app.add_option("file", words.file, help_of_file)->required();
+    add_output_options(app, words.output, true);
+}
+
 void add_list_command(CommandTree& tree, const std::string& name, const std::string& help, const std::string& one,
                       int (*action)(const ListCommand&)) {
     ListCommand& words = tree.keep<ListCommand>();
@@ -138,12 +147,15 @@ void add_loop_commands(CommandTree& tree) {
         tree.add("compare", "Settings by every method that applies, ranked", [&] { return tune(comparing); }),
         comparing);
 
-    RangeCommand& ranging = tree.keep<RangeCommand>();
-    CLI::App& range_app =
-        tree.add("range", "One setting and a schedule for a whole operating range", [&] { return range(ranging); });
-    range_app.add_option("file", ranging.file, "A request with points or equations as JSON; - reads standard input")
-        ->required();
-    add_output_options(range_app, ranging.output, true);
+    add_request_command(tree, "range", "", "One setting and a schedule for a whole operating range",
+                        "A request with points or equations as JSON; - reads standard input");
+    for (const auto& [name, help] : {std::pair{"cascade", "An inner and an outer controller"},
+                                     {"level", "A level controller that smooths flows"},
+                                     {"feedforward", "A compensator from a measured disturbance"},
+                                     {"interaction", "Controllers of two or three loops that disturb each other"},
+                                     {"predictor", "A dead-time compensator, and the PID of the same Ms"}})
+        add_request_command(tree, name, name, help, "The request of POST /v1/" + std::string(name) +
+                                                        " as JSON; - reads standard input");
 
     IdentifyCommand& identifying = tree.keep<IdentifyCommand>();
     CLI::App& identify_app =

@@ -1,0 +1,39 @@
+// Answers about loops around the loop in words: their conclusions, controllers and figures, for reports and terminals.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/json/json.h"
+
+namespace tunewright::api {
+
+/// True if a result is about a structure.
+bool is_of_structure(const Json& result);
+
+/// "Cascade" for "cascade"; an unknown name unchanged.
+std::string structure_title(std::string_view structure);
+
+/// {"code", "figures"} as a sentence; an unknown code unchanged.
+std::string conclusion_sentence(const Json& conclusion);
+
+/// A controller of the answer by its place, with its name.
+struct StructureController {
+    std::string name, pointer;
+};
+/// Those that are typed, in the order of the answer.
+std::vector<StructureController> structure_controllers(const Json& result);
+
+/// A figure of the answer by its place: "Ms of the inner loop", "/inner/robustness/Ms". `unit`: "time", "y time" or "".
+struct StructureFigure {
+    std::string name, pointer, unit;
+};
+std::vector<StructureFigure> structure_figures(const Json& result);
+
+/// "One loop" for "single": whose series they are. An unknown name unchanged.
+std::string series_title(std::string_view of);
+/// "Load at the valve" for "inner_load"; "Load 2" for "load_2".
+std::string input_title(std::string_view input);
+
+}  // namespace tunewright::api

@@ -1,12 +1,7 @@
 // Builds a program from other programs and from small dynamic parts: a controller within a cascade, a lead-lag, a dead
-// time.
-//
-// An embedded program keeps its law: its variables get other names, its inputs and settings may be bound to expressions
-// of the whole, its outputs become local. The parts begin in a first call, or after a restart, as if what they read had
-// been constant before.
+// time. The parts begin, in the first call and after a restart, as if their inputs had been constant before.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,72 +12,60 @@ namespace tunewright::code {
 
 constexpr int kMaxDelayCalls = 10'000;  ///< of a dead time: each call is a number in the program's memory
 
-/// How a program is embedded.
-struct Embedding {
-    /// The name of each variable in the whole. An output or a setting of the whole with this name takes its place.
-    std::function<std::string(const std::string&)> renamed;
-    std::map<std::string, Expr> bound;  ///< inputs and settings that are expressions of the whole
-};
-
-/// An embedded program: its statements, which the caller places, and its variables by the names that they had.
-struct Embedded {
-    std::map<std::string, Expr> variables;
-    Block body;
-
-    const Expr& operator[](const std::string& name) const { return variables.at(name); }
-};
-
-/// A linear system with one input that is held from call to call: x becomes Phi x + Gamma v.
+/// x becomes Phi x + Gamma v from call to call, with the output C x + D v.
 struct DiscreteSystem {
     std::vector<double> Phi, Gamma;  ///< n x n, row by row; n
-    std::vector<double> C;           ///< n
+    std::vector<double> C;
     double D = 0;
+    std::vector<double> Gamma_late = {};  ///< of an older v, which it adds; empty: none
 };
 
 class Composer {
 public:
-    Composer(std::string name, std::string title) {
-        program_.name = std::move(name);
-        program_.title = std::move(title);
-    }
+    /// With the settings `Ts`, `at_rest` and `restart`, which all embedded programs share.
+    Composer(std::string name, std::string title, double Ts);
 
-    Expr input(const std::string& name, const char* comment);
-    /// An input that a call may leave out.
+    /// A variable that has been declared.
+    Expr operator[](const std::string& name) const;
+    Expr input(const std::string& name, const char* comment) { return declare(VariableRole::input, name, comment); }
+    /// An input that a call may leave out; it is then `otherwise`.
     Expr optional_input(const std::string& name, const char* comment, Type type, double otherwise = 0);
-    Expr output(const std::string& name, const char* comment);
+    Expr output(const std::string& name, const char* comment) { return declare(VariableRole::output, name, comment); }
     Expr setting(const std::string& name, double value, const char* comment, Type type = Type::real);
-    /// The setting `name` of a program that will be embedded, under another name; with its own comment if none is
-    /// given.
-    Expr setting_of(const Program& part, const std::string& name, const std::string& renamed,
-                    const char* comment = nullptr);
-    Expr state(const std::string& name, const char* comment, Type type = Type::real, int length = 0);
-    Expr local(const std::string& name, const char* comment, Type type = Type::real);
+    Expr state(const std::string& name, const char* comment, Type type = Type::real, int length = 0) {
+        return declare(VariableRole::state, name, comment, type, length);
+    }
+    Expr local(const std::string& name, const char* comment, Type type = Type::real) {
+        return declare(VariableRole::local, name, comment, type);
+    }
+    /// A local that is assigned here.
+    Expr let(const std::string& name, const char* comment, const Expr& value);
 
     void add(Statement statement) { program_.body.push_back(std::move(statement)); }
-    void add(const Block& block) { program_.body.insert(program_.body.end(), block.begin(), block.end()); }
+    void add_bounded(const Expr& x, const Expr& value, const Expr& low, const Expr& high);
     /// In the first call, and after a restart, before everything else.
     void begin_with(Statement statement) { begin_.push_back(std::move(statement)); }
 
-    Embedded embed(const Program& part, const Embedding& how);
+    /// Adds a program's statements. Its variables come between `prefix` and `suffix`; those in `names` have the name
+    /// there, and a variable that already has it takes their place. Outputs become local.
+    void embed(const Program& part, std::map<std::string, std::string> names, const std::string& prefix = "",
+               const std::string& suffix = "");
 
-    /// K (Tz s + 1)/(Tp s + 1) by backward Euler; Tp may be 0. `before`: the input until the first call. Returns a
-    /// local `name`.
-    Expr lead_lag(const std::string& name, const Expr& x, const Expr& before, const Expr& K, const Expr& Tz,
-                  const Expr& Tp, const Expr& Ts);
-    /// x `calls` calls ago, linear between calls. `before` as above.
+    /// K (T_lead s + 1)/(T_lag s + 1) by backward Euler; T_lag may be 0. `before`: x until the first call.
+    Expr lead_lag(const std::string& name, const Expr& x, const Expr& before, const Expr& K, const Expr& lead,
+                  const Expr& lag);
+    /// x some calls ago, linear between two calls.
     Expr delayed(const std::string& name, const Expr& x, const Expr& before, double calls);
-    /// The output of a system whose states are 0 at first: C x + D v with the `v` of this call; then x moves by what
-    /// was held. `v` may be assigned later in the call: move() then comes after that.
-    Expr system_output(const std::string& name, const DiscreteSystem& system, const Expr& v);
-    /// Phi x + Gamma v of the same system; `late`, where Gamma1 is not empty, is an input of its own with that effect.
-    void move_system(const std::string& name, const DiscreteSystem& system, const Expr& v,
-                     const std::vector<double>& Gamma1 = {}, const Expr& late = 0);
+    /// The output of a linear system that is at rest at 0 at first.
+    Expr system(const std::string& name, const DiscreteSystem& system, const Expr& v);
+    /// Its states of the next call.
+    void move(const std::string& name, const DiscreteSystem& system, const Expr& v, const Expr& late = 0);
 
-    /// The whole program. `restart`: the setting that begins again.
-    Program take(const Expr& restart, std::vector<std::string> notes);
+    Program take(std::vector<std::string> notes);
 
 private:
-    Expr declare(VariableRole role, const std::string& name, const char* comment, Type type, int length = 0) {
+    Expr declare(VariableRole role, const std::string& name, const char* comment, Type type = Type::real,
+                 int length = 0) {
         return program_.declare({.role = role, .type = type, .name = name, .comment = comment, .length = length});
     }
 

@@ -14,13 +14,12 @@
 namespace tunewright::structure {
 namespace {
 
+using code::Block;
 using code::Composer;
 using code::DiscreteSystem;
 using code::Expr;
 using code::Program;
 using code::Type;
-using code::when;
-using code::whole;
 
 constexpr double kPoleTolerance = 1e-3;  // of F at the model's pole: coefficients may be rounded to four digits
 
@@ -30,21 +29,22 @@ Expected<Realisation> realised(const Rational& r) {
     return plant->realisation();
 }
 
-/// The system over one call with an input that is held and arrives `rest` after the call begins; what came before acts
-/// through Gamma1.
-struct HeldSystem {
-    HeldSystem(const Realisation& plant, double Ts, double rest) {
-        const HeldMotion motion(plant, 1, false);
-        const HeldStep whole = motion.step(Ts), after = motion.step(Ts - rest);
-        system = {.Phi = whole.Phi, .Gamma = after.Gamma, .C = plant.C, .D = plant.D};
-        if (rest == 0) return;
-        Gamma1.resize(plant.C.size());
-        multiply(after.Phi, motion.step(rest).Gamma, Gamma1);
-    }
+/// The system over one call, with an input that is held and arrives `rest` after the call begins.
+DiscreteSystem discrete(const Realisation& plant, double Ts, double rest) {
+    const HeldMotion motion(plant, 1, false);
+    const HeldStep whole = motion.step(Ts), after = motion.step(Ts - rest);
+    DiscreteSystem out{.Phi = whole.Phi, .Gamma = after.Gamma, .C = plant.C, .D = plant.D};
+    if (rest == 0) return out;
+    out.Gamma_late.resize(plant.C.size());
+    multiply(after.Phi, motion.step(rest).Gamma, out.Gamma_late);
+    return out;
+}
 
-    DiscreteSystem system;
-    std::vector<double> Gamma1;
-};
+/// The next place of the ring of u, of the calls within the dead time and one before.
+Block turned(const Expr& place, const SampledDelay& delay) {
+    return {assign(place, place + code::whole(1)),
+            when(place >= code::whole(delay.whole + 1), {assign(place, code::whole(0))})};
+}
 
 /// (E - F) Gm without the model's pole.
 Expected<Rational> without_pole(const PredictorModel& m, const Rational& F) {
@@ -71,105 +71,20 @@ Expected<Rational> without_pole(const PredictorModel& m, const Rational& F) {
     return out;
 }
 
-/// The program, part by part in the order in which a call computes them.
-class Predictor {
-public:
-    Predictor(const PredictorModel& model, double Ts)
-        : stable_(!model.integrating && model.T > 0), delay_(in_samples(model.L, Ts)) {
-        const auto growth = [&](double h) {
-            return model.integrating ? model.K * h : model.K * -std::expm1(-h / model.T);
-        };
-        a_ = model.integrating ? 1 : std::exp(-Ts / model.T);
-        b_ = growth(Ts);
-        b_rest_ = growth(delay_.rest);
-    }
-
-    /// `late`: of what the dead time has left; `F` of the measurement.
-    Program build(const Program& pid, const HeldSystem& F, const HeldSystem& late, std::vector<std::string> notes) {
-        const Expr r = whole_.input("setpoint", "r"), y = whole_.input("measurement", "y"),
-                   manual = whole_.optional_input("manual", "true: u is manual_output", Type::boolean),
-                   manual_output = whole_.optional_input("manual_output", "the operator's u", Type::real),
-                   u = whole_.output("u", "the controller's output"), bias = whole_.setting_of(pid, "bias", "bias"),
-                   y0 = whole_.setting_of(pid, "y0", "y0"), at_rest = whole_.setting_of(pid, "at_rest", "at_rest"),
-                   restart = whole_.setting_of(pid, "restart", "restart");
-        const Expr u_base = whole_.state("u_base", "u of the first call: the model has what u differs from it"),
-                   y_base = whole_.state("y_base", "y of the first call"),
-                   error = whole_.local("model_error", "what the model has not predicted of y"),
-                   prediction = whole_.local("prediction", "y without the dead time");
-        whole_.begin_with(assign(u_base, bias));
-        whole_.begin_with(when(both(manual, inverse(at_rest)), {assign(u_base, manual_output)}));
-        whole_.begin_with(assign(y_base, y));
-        whole_.begin_with(when(at_rest, {assign(y_base, y0)}));
-        declare_past();
-        whole_.add(code::remark("The prediction."));
-        const Expr rest = whole_.system_output("late", late.system, 0.0);
-        whole_.add(assign(error, stable_ ? y - y_base - rest : y - y_base));
-        const Expr filtered = whole_.system_output("filter", F.system, error);
-        const Expr now = stable_ ? whole_.system_output("model", model(), 0.0) : past_alone();
-        whole_.add(assign(prediction, stable_ ? y_base + now + filtered : y_base + now + rest + filtered));
-        whole_.add(whole_
-                       .embed(pid, {.renamed = [](const std::string& name) { return name; },
-                                    .bound = {{"setpoint", r},
-                                              {"measurement", prediction},
-                                              {"manual", manual},
-                                              {"manual_output", manual_output}}})
-                       .body);
-        whole_.add(code::remark("The model moves by the u that the limits have left."));
-        remember(u - u_base);
-        if (stable_) whole_.move_system("model", model(), v_);
-        whole_.move_system("late", late.system, element(ring_, place_), late.Gamma1, oldest_);
-        whole_.move_system("filter", F.system, error);
-        return whole_.take(restart, std::move(notes));
-    }
-
-private:
-    int length() const { return delay_.whole + 1; }
-    DiscreteSystem model() const { return {.Phi = {a_}, .Gamma = {b_}, .C = {1}}; }
-
-    void declare_past() {
-        ring_ = whole_.state("past", "u of the last calls, in a ring", Type::real, length());
-        place_ = whole_.state("past_place", "index of the oldest value in the ring", Type::integer);
-        k_ = whole_.local("past_k", "counts", Type::integer);
-        whole_.begin_with(repeat(k_, length(), {assign(element(ring_, k_), 0.0)}));
-        whole_.begin_with(assign(place_, whole(0)));
-        v_ = whole_.local("moved", "u less u_base");
-        oldest_ = whole_.local("oldest", "the same before the dead time and a call");
-    }
-
-    void add_turn(code::Block& block, const Expr& index) const {
-        block.push_back(assign(index, index + whole(1)));
-        block.push_back(when(index >= whole(length()), {assign(index, whole(0))}));
-    }
-
-    /// The model's response to the u of the last dead time alone.
-    Expr past_alone() {
-        const Expr x = whole_.local("to_come", "what the last dead time's u will do to y"),
-                   at = whole_.local("past_at", "index in the ring", Type::integer);
-        whole_.add(assign(x, delay_.rest > 0 ? b_rest_ * element(ring_, place_) : Expr(0.0)));
-        if (delay_.whole == 0) return x;
-        whole_.add(assign(at, place_));
-        code::Block body;
-        add_turn(body, at);
-        body.push_back(assign(x, (a_ == 1 ? x : a_ * x) + b_ * element(ring_, at)));
-        whole_.add(repeat(k_, delay_.whole, std::move(body)));
-        return x;
-    }
-
-    void remember(const Expr& v) {
-        whole_.add(assign(v_, v));
-        whole_.add(assign(oldest_, element(ring_, place_)));
-        whole_.add(assign(element(ring_, place_), v_));
-        code::Block turn;
-        add_turn(turn, place_);
-        whole_.add(turn);
-    }
-
-    const bool stable_;
-    const SampledDelay delay_;
-    double a_ = 0, b_ = 0, b_rest_ = 0;  // the model over one call, and over the rest of the dead time
-    Composer whole_{"predictor", "PID controller with a predictor"};
-    Expr ring_ = 0, place_ = 0, k_ = 0, v_ = 0, oldest_ = 0;
-};
+/// Adds the model's response to the u of the last dead time alone, and returns it.
+Expr add_past(Composer& whole, const PredictorModel& m, const SampledDelay& delay, double Ts) {
+    const auto growth = [&](double h) { return m.integrating ? m.K * h : m.K * -std::expm1(-h / m.T); };
+    const Expr past = whole["past"], place = whole["past_place"],
+               x = whole.let("to_come", "what the last dead time's u will do to y",
+                             growth(delay.rest) * element(past, place));
+    if (delay.whole == 0) return x;
+    const Expr at = whole.let("past_at", "index in the ring", place);
+    Block step = turned(at, delay);
+    const Expr grown = m.integrating ? x : std::exp(-Ts / m.T) * x;
+    step.push_back(assign(x, grown + growth(Ts) * element(past, at)));
+    whole.add(repeat(whole["past_k"], delay.whole, std::move(step)));
+    return x;
+}
 
 std::string model_note(const PredictorModel& m) {
     const std::string dead_time = " with the dead time Lm = " + text(m.L, 6) + " s. ";
@@ -225,15 +140,60 @@ Expected<Program> predictor_program(const PredictorController& controller, doubl
                      "The dead time is " + text(m.L) + " s, more than " + std::to_string(code::kMaxDelayCalls) +
                          " sample times of " + text(Ts) + " s. Give a longer sample_time."};
     const bool stable = !m.integrating && m.T > 0;
-    const auto rest = stable ? Expected<Rational>(Rational{{m.K}, {m.T, 1}}) : without_pole(m, controller.F);
+    const Rational Gm{{m.K}, {m.T, 1}};
+    const auto rest = stable ? Expected<Rational>(Gm) : without_pole(m, controller.F);
     if (!rest) return rest.error();
-    const auto F = realised(controller.F), late = realised(*rest);
-    if (!F) return F.error();
-    if (!late) return late.error();
+    const auto filter = realised(controller.F), late = realised(*rest), model = realised(Gm);
+    for (const auto* system : {&filter, &late, &model})
+        if (!*system) return system->error();
+    const SampledDelay delay = in_samples(m.L, Ts);
+    const DiscreteSystem F = discrete(*filter, Ts, 0), behind = discrete(*late, Ts, delay.rest),
+                         ahead = discrete(*model, Ts, 0);
+
+    Composer whole("predictor", "PID controller with a predictor", Ts);
+    whole.input("setpoint", "r");
+    const Expr y = whole.input("measurement", "y"),
+               manual = whole.optional_input("manual", "true: u is manual_output", Type::boolean),
+               by_hand = whole.optional_input("manual_output", "the operator's u", Type::real),
+               out = whole.output("u", "the controller's output"), at_rest = whole["at_rest"],
+               bias = whole.setting("bias", u.bias, "u at the operating point"),
+               y0 = whole.setting("y0", u.y0, "y at the operating point");
+    const Expr u_base = whole.state("u_base", "u of the first call: the model has what u differs from it"),
+               y_base = whole.state("y_base", "y of the first call"),
+               past = whole.state("past", "u of the last calls, in a ring", Type::real, delay.whole + 1),
+               place = whole.state("past_place", "index of the oldest value in the ring", Type::integer),
+               k = whole.local("past_k", "counts", Type::integer);
+    whole.begin_with(assign(u_base, bias));
+    whole.begin_with(when(both(manual, inverse(at_rest)), {assign(u_base, by_hand)}));
+    whole.begin_with(assign(y_base, y));
+    whole.begin_with(when(at_rest, {assign(y_base, y0)}));
+    whole.begin_with(repeat(k, delay.whole + 1, {assign(element(past, k), 0.0)}));
+    whole.begin_with(assign(place, code::whole(0)));
+
+    whole.add(code::remark("The prediction: y without the dead time."));
+    const Expr L = whole.system("late", behind, 0.0),
+               error = whole.let("model_error", "input of the filter", stable ? y - y_base - L : y - y_base),
+               filtered = whole.system("filtered", F, error),
+               now = stable ? whole.system("model", ahead, 0.0) : add_past(whole, m, delay, Ts) + L;
+    whole.let("prediction", "y without the dead time", y_base + now + filtered);
+    whole.embed(*pid, {{"setpoint", "setpoint"},
+                       {"measurement", "prediction"},
+                       {"manual", "manual"},
+                       {"manual_output", "manual_output"},
+                       {"u", "u"},
+                       {"bias", "bias"},
+                       {"y0", "y0"}});
+    whole.add(code::remark("The model moves by the u that the limits have left."));
+    const Expr v = whole.let("moved", "u less u_base", out - u_base),
+               oldest = whole.let("oldest", "the same a call before the dead time", element(past, place));
+    whole.add(assign(element(past, place), v));
+    for (const code::Statement& statement : turned(place, delay)) whole.add(statement);
+    if (stable) whole.move("model", ahead, v);
+    whole.move("late", behind, element(past, place), oldest);
+    whole.move("filtered", F, error);
     std::vector<std::string> notes = pid->notes;
     notes.insert(notes.begin(), model_note(m));
-    return Predictor(m, Ts).build(*pid, HeldSystem(*F, Ts, 0), HeldSystem(*late, Ts, in_samples(m.L, Ts).rest),
-                                  std::move(notes));
+    return whole.take(std::move(notes));
 }
 
 }  // namespace tunewright::structure

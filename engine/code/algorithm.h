@@ -38,6 +38,9 @@ struct CodeOptions {
 constexpr int kMaxSlopeSamples = 1000;
 constexpr double kNoLimit = 1e30;  ///< size of u_min and u_max that stands for no limit
 
+/// The notes of its program, in this order.
+enum class PidNote { law, limits, windup, manual, changes, start };
+
 /// Errors (invalid_argument or unsupported, `where` names the field): Ts, Tf, slope_samples or limits out of range; the
 /// forward rule unstable at this Ts; a velocity form without integral action, whose u would not return after a limit.
 /// With `follows_schedule` its notes say that a schedule sets the settings; scheduled_algorithm() adds that schedule.

@@ -170,8 +170,8 @@ void Builder::add_bounds() {
     add(assign(low_, u_min_));
     add(assign(high_, u_max_));
     Block rate{assign(low_, u_last_ - rate_limit_ * Ts_), assign(high_, u_last_ + rate_limit_ * Ts_)};
-    bound(rate, low_, u_min_, u_max_);
-    bound(rate, high_, u_min_, u_max_);
+    keep_within(rate, low_, u_min_, u_max_);
+    keep_within(rate, high_, u_min_, u_max_);
     add(when(rate_limit_ > 0, std::move(rate)));
 }
 
@@ -188,7 +188,7 @@ void Builder::add_output() {
 Block Builder::held() {
     Block block{assign(u_, plan_.integral ? bias_ : manual_output_)};
     if (plan_.integral) block.push_back(when(manual_, {assign(u_, manual_output_)}));
-    bound(block, u_, u_min_, u_max_);
+    keep_within(block, u_, u_min_, u_max_);
     // The derivative part is left out: at rest it consists only of the noise of one sample, and nothing would remove
     // that later.
     if (plan_.position) block.push_back(assign(integral_, u_ - proportional_));
@@ -203,7 +203,7 @@ Block Builder::position_output() {
     Block block;
     if (!plan_.integral) {
         block.push_back(assign(u_, sum(integral_)));
-        bound(block, u_, low_, high_);
+        keep_within(block, u_, low_, high_);
         return block;
     }
     const Expr raw = local("raw", "u of the law alone");
@@ -213,14 +213,14 @@ Block Builder::position_output() {
         block.push_back(assign(wound, either(both(raw > high_, increment_ > 0), both(raw < low_, increment_ < 0))));
         block.push_back(when(inverse(wound), {assign(integral_, integral_ + increment_)}));
         block.push_back(assign(u_, sum(integral_)));
-        bound(block, u_, low_, high_);
+        keep_within(block, u_, low_, high_);
         return block;
     }
     const Expr tracking = local("tracking", "share of the missing u by which the integral part moves");
     block.push_back(assign(integral_, integral_ + increment_));
     block.push_back(assign(raw, sum(integral_)));
     block.push_back(assign(u_, raw));
-    bound(block, u_, low_, high_);
+    keep_within(block, u_, low_, high_);
     block.push_back(assign(tracking, 1.0));
     block.push_back(when(Tt_ > Ts_, {assign(tracking, Ts_ / Tt_)}));
     block.push_back(when(gain_i_ != 0, {assign(integral_, integral_ + tracking * (u_ - raw))}));
@@ -230,7 +230,7 @@ Block Builder::position_output() {
 Block Builder::velocity_output() {
     const Expr sum = u_last_ + proportional_ + increment_;
     Block block{assign(u_, plan_.derivative ? sum + derivative_ : sum)};
-    bound(block, u_, low_, high_);
+    keep_within(block, u_, low_, high_);
     if (plan_.derivative) block.push_back(assign(slope_last_, slope_));
     return block;
 }

@@ -26,8 +26,9 @@ public:
     }
 
 private:
-    Expr input(const char* name, Type type, const char* comment) {
-        return program_.declare({.role = VariableRole::input, .type = type, .name = name, .comment = comment});
+    Expr input(const char* name, Type type, const char* comment, bool optional = false) {
+        return program_.declare(
+            {.role = VariableRole::input, .type = type, .name = name, .comment = comment, .optional = optional});
     }
     Expr setting(const char* name, double value, const char* comment, Type type = Type::real) {
         return program_.declare(
@@ -67,17 +68,13 @@ private:
     Expr fed(const Expr& e) const {
         return plan_.options.delta_r ? e * exponential(-(e * e) / (2 * delta_r_ * delta_r_)) : e;
     }
-    static void bound(Block& block, const Expr& x, const Expr& low, const Expr& high) {
-        block.push_back(when(x > high, {assign(x, high)}));
-        block.push_back(when(x < low, {assign(x, low)}));
-    }
 
     Plan plan_;
     Program program_;
     Expr setpoint_ = input("setpoint", Type::real, "r");
     Expr measurement_ = input("measurement", Type::real, "y");
-    Expr manual_ = input("manual", Type::boolean, "true: u is manual_output");
-    Expr manual_output_ = input("manual_output", Type::real, "the operator's u");
+    Expr manual_ = input("manual", Type::boolean, "true: u is manual_output", true);
+    Expr manual_output_ = input("manual_output", Type::real, "the operator's u", true);
     Expr u_ = program_.declare({.role = VariableRole::output, .name = "u", .comment = "the controller's output"});
 
     // Set by the declaring functions, if the plan needs them.

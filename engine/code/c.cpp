@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cctype>
 #include <cstdint>
 
 #include "engine/code/print.h"
@@ -10,11 +10,15 @@ namespace {
 
 class C : public Dialect {
 public:
+    explicit C(const Program& program)
+        : record_(program.name), kept_outputs_(of_role(program, VariableRole::output).size() > 1) {}
+
     std::string real(double value) const override { return real_literal(value, 'e'); }
     std::string boolean(bool value) const override { return value ? "true" : "false"; }
     std::string variable(const VariableReference& place) const override {
-        const bool field = place.role == VariableRole::parameter || place.role == VariableRole::state;
-        return field ? "pid->" + place.name : place.name;
+        const bool field = place.role == VariableRole::parameter || place.role == VariableRole::state ||
+                           (place.role == VariableRole::output && kept_outputs_);
+        return field ? record_ + "->" + place.name : place.name;
     }
     std::string exponential(const std::string& argument) const override { return "exp(" + argument + ")"; }
     std::string mark(Operation operation) const override {
@@ -47,6 +51,12 @@ public:
     std::string close_decision() const override { return "}"; }
     std::string close_repetition() const override { return "}"; }
     std::string remark(const std::string& text) const override { return "/* " + text + " */"; }
+
+    bool keeps_outputs() const { return kept_outputs_; }
+
+private:
+    std::string record_;
+    bool kept_outputs_;  // a function returns one value: several outputs are fields
 };
 
 const char* type_text(Type type) { return type == Type::real ? "double " : type == Type::boolean ? "bool " : "int "; }
@@ -56,14 +66,15 @@ std::string field(const Declaration& variable) {
     return indentation(1) + type_text(variable.type) + variable.name + length + "; /* " + variable.comment + " */\n";
 }
 
-std::string initial(const Declaration& variable) {
-    const C c;
+std::string initial(const Declaration& variable, const Program& program) {
+    const C c(program);
+    const std::string place = indentation(1) + c.variable({variable.role, variable.name});
     const std::string value = variable.type == Type::real      ? c.real(variable.initial)
                               : variable.type == Type::boolean ? c.boolean(variable.initial != 0)
                                                                : "0";
-    if (variable.length == 0) return indentation(1) + "pid->" + variable.name + " = " + value + ";\n";
-    return indentation(1) + "for (int k = 0; k < " + std::to_string(variable.length) + "; ++k) {\n" + indentation(2) +
-           "pid->" + variable.name + "[k] = " + value + ";\n" + indentation(1) + "}\n";
+    if (variable.length == 0) return place + " = " + value + ";\n";
+    return indentation(1) + "for (int k = 0; k < " + std::to_string(variable.length) + "; ++k) {\n" + indentation(1) +
+           place + "[k] = " + value + ";\n" + indentation(1) + "}\n";
 }
 
 void add_struct(const Program& program, std::string& out) {
@@ -71,56 +82,74 @@ void add_struct(const Program& program, std::string& out) {
     for (const Declaration& variable : of_role(program, VariableRole::parameter)) out += field(variable);
     out += "\n    /* Memory; do not write to it. */\n";
     for (const Declaration& variable : of_role(program, VariableRole::state)) out += field(variable);
-    out += "} tunewright_pid;\n\n";
+    if (C(program).keeps_outputs()) {
+        out += "\n    /* Outputs of the last call. */\n";
+        for (const Declaration& variable : of_role(program, VariableRole::output)) out += field(variable);
+    }
+    out += "} tunewright_" + program.name + ";\n\n";
 }
 
 void add_init(const Program& program, std::string& out) {
     out += "/* Sets the tuned settings; the next call is the first one. */\n";
-    out += "static inline void tunewright_pid_init(tunewright_pid *pid)\n{\n";
+    const std::string type = "tunewright_" + program.name;
+    out += "static inline void " + type + "_init(" + type + " *" + program.name + ")\n{\n";
     for (const VariableRole role : {VariableRole::parameter, VariableRole::state})
-        for (const Declaration& variable : of_role(program, role)) out += initial(variable);
+        for (const Declaration& variable : of_role(program, role)) out += initial(variable, program);
     out += "}\n\n";
 }
 
 void add_step(const Program& program, std::string& out) {
-    out += "/* One call every Ts seconds; the answer is u. */\n";
-    out += "static inline double tunewright_pid_step(\n    tunewright_pid *pid";
+    const C c(program);
+    const std::string type = "tunewright_" + program.name;
+    out += c.keeps_outputs() ? "/* One call every Ts seconds; the outputs are fields. */\nstatic inline void "
+                             : "/* One call every Ts seconds; the answer is u. */\nstatic inline double ";
+    out += type + "_step(\n    " + type + " *" + program.name;
     for (const Declaration& variable : of_role(program, VariableRole::input))
         out += std::string(", ") + type_text(variable.type) + variable.name;
     out += ")\n{\n";
     for (const VariableRole role : {VariableRole::local, VariableRole::output})
-        for (const Declaration& variable : of_role(program, role)) out += field(variable);
-    out += "\n" + text_of(program.body, C(), 1) + "    return " + of_role(program, VariableRole::output).front().name +
-           ";\n}\n";
+        for (const Declaration& variable : of_role(program, role))
+            if (role == VariableRole::local || !c.keeps_outputs()) out += field(variable);
+    out += "\n" + text_of(program.body, c, 1);
+    if (!c.keeps_outputs()) out += "    return " + output_names(program) + ";\n";
+    out += "}\n";
 }
 
 bool uses_exponential(const std::string& text) { return text.find("exp(") != text.npos; }
 
 /// The same text may be included twice. Another program with the same names must not be ignored silently: its loop
 /// would then run with the first one's settings.
-std::string open_guard(const std::string& functions) {
+std::string open_guard(const Program& program, const std::string& functions) {
     std::uint64_t sum = 0xcbf29ce484222325;  // FNV-1a, 64 bits (Fowler, Noll and Vo, 1991)
     for (const unsigned char byte : functions) sum = (sum ^ byte) * 0x100000001b3;
-    const std::string own = fmt::format("TUNEWRIGHT_PID_{:016X}", sum);
-    return "#ifndef " + own + "\n#define " + own + "\n#ifdef TUNEWRIGHT_PID_H\n" +
+    std::string any = "TUNEWRIGHT_" + program.name + "_";
+    for (char& letter : any) letter = static_cast<char>(std::toupper(letter));
+    const std::string own = fmt::format("{}{:016X}", any, sum);
+    return "#ifndef " + own + "\n#define " + own + "\n#ifdef " + any + "H\n" +
            "#error \"Two programs of Tunewright in one source: include each in its own source, or keep one and set the "
-           "other loop's settings after tunewright_pid_init.\"\n#endif\n#define TUNEWRIGHT_PID_H\n\n";
+           "other loop's settings after tunewright_" +
+           program.name + "_init.\"\n#endif\n#define " + any + "H\n\n";
 }
 
 std::string c_argument(const Declaration& input) {
-    return input.name == "manual" ? "false" : input.name == "manual_output" ? "0.0" : input.name;
+    if (!input.optional) return input.name;
+    return input.type != Type::boolean ? "0.0" : input.initial != 0 ? "true" : "false";
 }
 
 }  // namespace
 
 std::string print_c(const Program& program, const Provenance& provenance) {
-    const std::vector<std::string> call{
-        "Call, for each controller:",
-        "    tunewright_pid pid;",
-        "    tunewright_pid_init(&pid);",
-        "and then every Ts seconds:",
-        "    u = tunewright_pid_step(&pid, " + example_arguments(program, c_argument) + ");",
-        "Settings are fields of the struct: pid." + example_setting(program) + " = 2.0;"};
+    const std::string type = "tunewright_" + program.name;
+    const bool keeps_outputs = C(program).keeps_outputs();
+    const std::vector<std::string> call{"Call, for each controller:",
+                                        "    " + type + " " + program.name + ";",
+                                        "    " + type + "_init(&" + program.name + ");",
+                                        "and then every Ts seconds:",
+                                        std::string("    ") + (keeps_outputs ? "" : "u = ") + type + "_step(&" +
+                                            program.name + ", " + example_arguments(program, c_argument) + ");",
+                                        std::string("Settings ") + (keeps_outputs ? "and outputs " : "") +
+                                            "are fields of the struct: " + program.name + "." +
+                                            example_setting(program) + " = 2.0;"};
     std::string head = "/*\n";
     for (const std::string& line : head_lines(program, provenance, call))
         head += line.empty() ? " *\n" : " * " + line + "\n";
@@ -131,7 +160,8 @@ std::string print_c(const Program& program, const Provenance& provenance) {
     add_step(program, step);
     functions += step;
     const char* math = uses_exponential(step) ? "#include <math.h>\n" : "";
-    return head + " */\n" + open_guard(functions) + math + "#include <stdbool.h>\n\n" + functions + "\n#endif\n";
+    return head + " */\n" + open_guard(program, functions) + math + "#include <stdbool.h>\n\n" + functions +
+           "\n#endif\n";
 }
 
 }  // namespace tunewright::code

@@ -1,6 +1,7 @@
 #include "engine/code/print.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "engine/code/algorithm.h"
@@ -150,8 +151,22 @@ std::vector<Declaration> of_role(const Program& program, VariableRole role) {
 
 std::string example_setting(const Program& program) {
     const auto settings = of_role(program, VariableRole::parameter);
-    return std::ranges::any_of(settings, [](const Declaration& setting) { return setting.name == "Kp"; }) ? "Kp"
-                                                                                                          : "u_max";
+    for (const char* name : {"Kp", "u_max"})
+        if (std::ranges::find(settings, name, &Declaration::name) != settings.end()) return name;
+    const auto gain = std::ranges::find_if(
+        settings, [](const Declaration& setting) { return setting.name.find("Kp") != std::string::npos; });
+    return gain == settings.end() ? "u_max" : gain->name;
+}
+
+std::string type_name(const Program& program) {
+    return std::string("Tunewright") + static_cast<char>(std::toupper(program.name.front())) + program.name.substr(1);
+}
+
+std::string output_names(const Program& program) {
+    std::string out;
+    for (const Declaration& output : of_role(program, VariableRole::output))
+        out += (out.empty() ? "" : ", ") + output.name;
+    return out;
 }
 
 std::string example_arguments(const Program& program, const std::function<std::string(const Declaration&)>& argument) {
@@ -238,7 +253,7 @@ std::string settings_line(const Program& program) {
 
 std::vector<std::string> head_lines(const Program& program, const Provenance& provenance,
                                     const std::vector<std::string>& call) {
-    std::vector<std::string> lines{"PID controller, written by Tunewright " TUNEWRIGHT_VERSION "."};
+    std::vector<std::string> lines{program.title + ", written by Tunewright " TUNEWRIGHT_VERSION "."};
     lines.emplace_back();
     constexpr std::size_t kColumn = 14;
     for (const auto& [name, value] : provenance) {

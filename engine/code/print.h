@@ -29,6 +29,7 @@ public:
 
     virtual std::string real(double value) const = 0;
     virtual std::string boolean(bool value) const = 0;
+    /// The name alone, or with the record that keeps it.
     virtual std::string variable(const VariableReference& place) const = 0;
     /// The operator with blanks between two operands (" + "), or before a single one ("-").
     virtual std::string mark(Operation operation) const = 0;
@@ -61,7 +62,13 @@ std::string indentation(int depth);
 
 std::vector<Declaration> of_role(const Program& program, VariableRole role);
 
-/// A setting that the user may write, for the example: Kp, or a limit if the program computes Kp itself.
+/// The program's type: its name in capitals at the beginning, "TunewrightPid".
+std::string type_name(const Program& program);
+
+/// The names of the outputs, joined by commas.
+std::string output_names(const Program& program);
+
+/// A setting that the user may write, for the example: Kp, or a limit if the program has no Kp or computes it itself.
 std::string example_setting(const Program& program);
 
 /// The arguments of the example call, one for each input, joined by commas: `argument` of each declaration.

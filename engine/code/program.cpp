@@ -96,7 +96,13 @@ Statement repeat(const Expr& index, int count, Block body) {
 
 Statement remark(std::string text) { return {Remark{std::move(text)}}; }
 
+void keep_within(Block& block, const Expr& x, const Expr& low, const Expr& high) {
+    block.push_back(when(x > high, {assign(x, high)}));
+    block.push_back(when(x < low, {assign(x, low)}));
+}
+
 Expr Program::declare(Declaration declaration) {
+    require(!same_name(name, declaration.name), "the program itself has this name");
     for (const Declaration& known : variables)
         require(!same_name(known.name, declaration.name),
                 "the name is already "

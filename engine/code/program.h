@@ -24,7 +24,7 @@ enum class VariableRole {
     parameter,  ///< a setting: has an initial value, the user may write it between two calls
     state,      ///< kept from call to call, private
     local,      ///< valid within one call; assigned before it is read
-    output,     ///< the result of a call; the program has one
+    output,     ///< the result of a call
 };
 
 struct Declaration {
@@ -34,6 +34,7 @@ struct Declaration {
     std::string comment = {};  ///< one line for the reader
     double initial = 0;        ///< of parameters and states; for Booleans 0 is false
     int length = 0;            ///< > 0: an array of that many elements, indexed from 0
+    bool optional = false;     ///< of an input: a call may leave it out where the language can; it is then `initial`
 };
 
 enum class Operation {
@@ -139,13 +140,18 @@ Statement assign(const Expr& target, const Expr& value);
 Statement when(const Expr& condition, Block then, Block otherwise = {});
 Statement repeat(const Expr& index, int count, Block body);
 Statement remark(std::string text);
+/// Two decisions that keep x, a variable, from `low` to `high`.
+void keep_within(Block& block, const Expr& x, const Expr& low, const Expr& high);
 
 struct Program {
-    std::vector<std::string> notes;  ///< paragraphs for the reader: what it computes and how
+    std::string name = "pid";              ///< of its type in the languages: lower case, one word
+    std::string title = "PID controller";  ///< for the reader
+    std::vector<std::string> notes;        ///< paragraphs for the reader: what it computes and how
     std::vector<Declaration> variables;
     Block body;
 
-    /// The variable as an expression. Throws std::logic_error for a name that is already used; case does not count.
+    /// The variable as an expression. Throws std::logic_error for a name that is already used, that of the program
+    /// included; case does not count.
     Expr declare(Declaration declaration);
 };
 

@@ -44,50 +44,51 @@ public:
     std::string remark(const std::string& text) const override { return "# " + text; }
 };
 
-std::string attribute(const Declaration& variable) {
+std::string initial_value(const Declaration& variable) {
     const Python python;
-    std::string value = variable.type == Type::real      ? python.real(variable.initial)
-                        : variable.type == Type::boolean ? python.boolean(variable.initial != 0)
-                                                         : "0";
+    return variable.type == Type::real      ? python.real(variable.initial)
+           : variable.type == Type::boolean ? python.boolean(variable.initial != 0)
+                                            : "0";
+}
+
+std::string attribute(const Declaration& variable) {
+    std::string value = initial_value(variable);
     if (variable.length > 0) value = "[" + value + "] * " + std::to_string(variable.length);
     return indentation(2) + "self." + variable.name + " = " + value + "  # " + variable.comment + "\n";
 }
 
-std::string arguments(const Program& program) {
-    std::string out = "self";
-    for (const Declaration& variable : of_role(program, VariableRole::input)) {
-        out += ", " + variable.name;
-        // The caller may omit manual.
-        if (variable.name == "manual") out += "=False";
-        if (variable.name == "manual_output") out += "=0.0";
-    }
-    return out;
+std::string python_argument(const Declaration& input) {
+    return input.optional ? input.name + "=" + initial_value(input) : input.name;
 }
 
-std::string python_argument(const Declaration& input) {
-    if (input.name == "manual") return "manual=False";
-    return input.name == "manual_output" ? "manual_output=0.0" : input.name;
+std::string arguments(const Program& program) {
+    std::string out = "self";
+    for (const Declaration& variable : of_role(program, VariableRole::input)) out += ", " + python_argument(variable);
+    return out;
 }
 
 }  // namespace
 
 std::string print_python(const Program& program, const Provenance& provenance) {
     const std::vector<std::string> call{
-        "Call, for each controller:", "    pid = TunewrightPid()",
-        "and then every Ts seconds:", "    u = pid.step(" + example_arguments(program, python_argument) + ")",
-        "Settings are attributes: pid." + example_setting(program) + " = 2.0"};
+        "Call, for each controller:", "    " + program.name + " = " + type_name(program) + "()",
+        "and then every Ts seconds:",
+        "    " + output_names(program) + " = " + program.name + ".step(" + example_arguments(program, python_argument) +
+            ")",
+        "Settings are attributes: " + program.name + "." + example_setting(program) + " = 2.0"};
     std::string out;
     for (const std::string& line : head_lines(program, provenance, call))
         out += line.empty() ? "#\n" : "# " + line + "\n";
     const std::string body = text_of(program.body, Python(), 2);
     out += body.find("math.") == body.npos ? "\n\n" : "\nimport math\n\n\n";
-    out += "class TunewrightPid:\n    \"\"\"A sampled PID controller.\"\"\"\n\n    def __init__(self):\n";
+    out += "class " + type_name(program) + ":\n    \"\"\"A sampled " + program.title +
+           ".\"\"\"\n\n    def __init__(self):\n";
     for (const Declaration& variable : of_role(program, VariableRole::parameter)) out += attribute(variable);
     out += "\n        # Memory; do not write to it.\n";
     for (const Declaration& variable : of_role(program, VariableRole::state)) out += attribute(variable);
-    out += "\n    def step(" + arguments(program) +
-           "):\n        \"\"\"One call every Ts seconds; the answer is u.\"\"\"\n";
-    return out + body + "        return " + of_role(program, VariableRole::output).front().name + "\n";
+    out += "\n    def step(" + arguments(program) + "):\n        \"\"\"One call every Ts seconds; the answer is " +
+           output_names(program) + ".\"\"\"\n";
+    return out + body + "        return " + output_names(program) + "\n";
 }
 
 }  // namespace tunewright::code

@@ -1,4 +1,5 @@
-#include <map>
+#include <cctype>
+#include <utility>
 
 #include "engine/code/print.h"
 
@@ -65,26 +66,29 @@ void add_section(const char* section, const std::vector<Declaration>& variables,
 }
 
 std::string text_argument(const Declaration& input) {
-    static const std::map<std::string, std::string> kGiven{{"setpoint", "SP"},
-                                                           {"measurement", "PV"},
-                                                           {"scheduling", "PLACE"},
-                                                           {"manual", "FALSE"},
-                                                           {"manual_output", "0.0"}};
-    return input.name + " := " + kGiven.at(input.name);
+    static const std::pair<const char*, const char*> kShort[] = {
+        {"setpoint", "SP"}, {"measurement", "PV"}, {"scheduling", "PLACE"}, {"disturbance", "DV"}};
+    if (input.optional) return input.name + initial_text(input);
+    std::string value = input.name;
+    for (const auto& [word, tag] : kShort)
+        if (const auto at = value.find(word); at != value.npos) value.replace(at, std::string(word).size(), tag);
+    for (char& c : value) c = static_cast<char>(std::toupper(c));
+    return input.name + " := " + value;
 }
 
 }  // namespace
 
 std::string print_structured_text(const Program& program, const Provenance& provenance) {
     const std::vector<std::string> call{
-        "Call, once a cycle in a task whose period is Ts, with an instance heater : TunewrightPid;",
-        "    heater(" + example_arguments(program, text_argument) + ");", "    OUT := heater.u;",
+        "Call, once a cycle in a task whose period is Ts, with an instance heater : " + type_name(program) + ";",
+        "    heater(" + example_arguments(program, text_argument) + ");",
+        "    OUT := heater." + of_role(program, VariableRole::output).front().name + ";",
         "Settings are inputs with initial values; they are given in the same way: heater(" + example_setting(program) +
             " := 2.0, ...)."};
     std::string out = "(*\n";
     for (const std::string& line : head_lines(program, provenance, call))
         out += line.empty() ? "\n" : "  " + line + "\n";
-    out += "*)\nFUNCTION_BLOCK TunewrightPid\n";
+    out += "*)\nFUNCTION_BLOCK " + type_name(program) + "\n";
     std::vector<Declaration> inputs = of_role(program, VariableRole::input);
     const std::vector<Declaration> settings = of_role(program, VariableRole::parameter);
     inputs.insert(inputs.end(), settings.begin(), settings.end());

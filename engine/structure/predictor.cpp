@@ -32,16 +32,6 @@ constexpr double kBesideZero = 1e-5;  // of 1/time scale: the controller's own i
 
 using OverFrequency = std::function<Complex(double)>;
 
-Rational product(const Rational& a, const Rational& b) {
-    const auto times = [](const std::vector<double>& x, const std::vector<double>& y) {
-        std::vector<double> out(x.size() + y.size() - 1, 0.0);
-        for (std::size_t i = 0; i < x.size(); ++i)
-            for (std::size_t k = 0; k < y.size(); ++k) out[i + k] += x[i] * y[k];
-        return out;
-    };
-    return {times(a.num, b.num), times(a.den, b.den)};
-}
-
 Expected<LinearPlant> block(const Rational& r, double gain = 1, double L = 0) {
     TransferFunction plant{.num = r.num, .den = r.den, .L = L};
     for (double& c : plant.num) c *= gain;
@@ -157,13 +147,9 @@ PredictorController controller_of(const PredictorModel& m, PredictorKind kind, d
     if (!filtered) return out;
     out.Tf = knob;
     out.beta = zero_of(m, knob);
-    const Rational wanted{{out.beta, 1}, {knob * knob, 2 * knob, 1}};
-    if (m.integrating || m.T < 0) {
-        const double a = out.C.num[0] / out.C.num[1];
-        out.F = product(wanted, {{knob * knob, 2 * knob, 1}, {a, 1}});
-    } else {
-        out.F = product(wanted, {{knob, 1}, {1}});
-    }
+    // (beta s + 1)/(Tf s + 1)^2 over T0, whose numerator is that of C where C does not cancel the model's pole.
+    const bool kept = m.integrating || m.T < 0;
+    out.F = {{out.beta, 1}, {kept ? out.C.num[0] / out.C.num[1] : knob, 1}};
     return out;
 }
 

@@ -27,7 +27,7 @@ ROOMS = {
         "evaluation": {"simulation", "loop", "plant", "controller", "numerics"},
         "tuning": {"evaluation", "reduction", "simulation", "loop", "plant", "controller", "numerics"},
         "check": {"identification", "simulation", "loop", "plant", "controller", "numerics"},
-        "structure": {"blocks", "tuning", "evaluation", "simulation", "loop", "plant", "controller", "numerics"},
+        "structure": {"blocks", "code", "tuning", "evaluation", "simulation", "loop", "plant", "controller", "numerics"},
         "range": {"tuning", "evaluation", "simulation", "loop", "plant", "controller", "numerics"},
         "request": {"check", "range", "evaluation", "tuning", "identification", "reduction", "simulation", "loop", "plant",
                     "controller", "numerics"},

@@ -13,6 +13,7 @@
 #include "api/contract/request.h"
 #include "api/contract/result/identified_model.h"
 #include "api/contract/result/result.h"
+#include "api/contract/structure/structure_name.h"
 #include "api/describe/body.h"
 #include "api/json/digest.h"
 #include "api/json/json.h"
@@ -279,9 +280,7 @@ std::variant<std::string, Problem> request_of_result(std::string_view result, co
     return std::move(prepared.request_json);
 }
 
-JobOutcome run_job(const PreparedJob& job, const RunControl& control) {
-    return job.run(job.request_hash, control);
-}
+JobOutcome run_job(const PreparedJob& job, const RunControl& control) { return job.run(job.request_hash, control); }
 
 JobOutcome run_job(const StoredRequest& stored, const RunControl& control) {
     const auto parsed = parse(stored.json);
@@ -290,7 +289,8 @@ JobOutcome run_job(const StoredRequest& stored, const RunControl& control) {
     return with_contract(value, [&](const auto& contract) {
         auto decoded = decode(value, contract);
         const auto* problem = std::get_if<Problem>(&decoded);
-        return problem != nullptr ? failure(*problem) : outcome_of(std::get<0>(std::move(decoded)), stored.hash, control);
+        return problem != nullptr ? failure(*problem)
+                                  : outcome_of(std::get<0>(std::move(decoded)), stored.hash, control);
     });
 }
 

@@ -1,40 +1,21 @@
 #include "api/code/code.h"
 
 #include "api/code/parameters.h"
+#include "api/code/printed.h"
 #include "api/code/provenance.h"
+#include "api/code/structure_program.h"
 #include "api/contract/controller.h"
 #include "api/contract/range/range_request.h"
+#include "api/contract/structure/structure_name.h"
 #include "engine/code/algorithm.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {
 namespace {
 
-ControllerCode file_of(code::Language language, std::string text) {
-    switch (language) {
-        case code::Language::structured_text: return {"text/plain", "TunewrightPid.st", std::move(text)};
-        case code::Language::c: return {"text/x-c", "tunewright_pid.h", std::move(text)};
-        case code::Language::python: return {"text/x-python", "tunewright_pid.py", std::move(text)};
-    }
-    return {};
-}
-
-ControllerCode printed(const code::Program& program, code::Language language, const code::Provenance& provenance,
-                       const SampleTime& sample_time) {
-    code::Provenance rows = provenance;
-    rows.emplace_back("Sample time", tunewright::text(sample_time.seconds, 6) + " s, " + sample_time.origin);
-    return file_of(language, code::print(program, language, rows));
-}
-
-/// The controller of the entry; a nonlinear one with the range of errors for which it was designed.
 Controller controller_of(const Json& entry, Reader& reader) {
     const Reader::At at(reader, "controller");
-    Controller controller;
-    controller_contract().read(entry.at("controller"), controller, reader);
-    if (const auto* npid = std::get_if<Npid>(&controller); npid != nullptr && !npid->delta_r)
-        reader.fault_at("delta_r",
-                        "delta_r is missing; the nonlinear form needs the size of error for which it was designed.");
-    return controller;
+    return read_controller(entry.at("controller"), reader);
 }
 
 std::variant<ControllerCode, Problem> written(const ChosenEntry& found, const AskedCode& asked,
@@ -118,10 +99,24 @@ std::variant<ControllerCode, Problem> controller_code(const ResultSource& source
         ChosenEntry found;
         if (auto problem = read_result(source, found)) return *std::move(problem);
         if (index.empty() && has_schedule(found.result)) return written_schedule(found, words);
+        if (index.empty() && !structure_of(found.result).empty()) return written_structure(found, words);
         if (auto problem = find_entry(index, found)) return *std::move(problem);
         return written_entry(found, words);
     } catch (const Json::exception&) {  // a file that only resembles a result: its members have other types
         return not_a_result();
+    }
+}
+
+std::variant<ControllerCode, Problem> structure_code(const ResultSource& source, const CodeWords& words) {
+    Problem none{404, "not-found", "Not Found", "", {}, {}};
+    none.detail = "This is not an answer about a structure. The code of a controller has its number in the address.";
+    try {
+        ChosenEntry found;
+        if (auto problem = read_result(source, found)) return *std::move(problem);
+        if (structure_of(found.result).empty()) return none;
+        return written_structure(found, words);
+    } catch (const Json::exception&) {
+        return none;
     }
 }
 

@@ -25,6 +25,9 @@ struct ControllerCode {
 std::variant<ControllerCode, Problem> controller_code(const ResultSource& source, const std::string& index,
                                                       const CodeWords& words);
 
+/// The program of all controllers of a structure. Problems: as above; 404 no answer about a structure.
+std::variant<ControllerCode, Problem> structure_code(const ResultSource& source, const CodeWords& words);
+
 /// The program of the schedule in an answer about an operating range, with the scheduling variable as a further input.
 /// Problems: as above; 404 no such answer or one without a schedule; 422 rows that one program cannot follow.
 std::variant<ControllerCode, Problem> schedule_code(const ResultSource& source, const CodeWords& words);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "api/contract/device/device.h"
+#include "api/contract/structure/structure_name.h"
 #include "api/csv/text.h"
 #include "engine/code/settings.h"
 #include "engine/number_text.h"
@@ -79,13 +80,47 @@ const Description<CodeQuestion>& code_contract() {
                    "Largest change of u per unit of time.", {.unit = "u/time"})
             .field("bias", &Q::bias, maybe(number()), "u at the operating point.", {.unit = "u"})
             .field("y0", &Q::y0, maybe(number()), "y at the operating point.", {.unit = "y"})
+            .field("r2_min", &Q::r2_min, maybe(number()), "Cascade: least set point of the inner loop.", {.unit = "y"})
+            .field("r2_max", &Q::r2_max, maybe(number()), "Cascade: its largest.", {.unit = "y"})
+            .field("r2_bias", &Q::r2_bias, maybe(number()), "Cascade: it at the operating point.", {.unit = "y"})
+            .field("d0", &Q::d0, maybe(number()), "Feedforward: the disturbance at the operating point.")
+            .field("compensator", &Q::compensator,
+                   maybe(choice<std::string>({{"static", "static"},
+                                              {"inverse", "inverse"},
+                                              {"guzman_hagglund", "guzman_hagglund"},
+                                              {"optimum", "optimum"},
+                                              {"given", "given"}})),
+                   "Feedforward: which of the answer's; default: the last.")
             .check(check_question);
         return d;
     }();
     return description;
 }
 
+Controller read_controller(const Json& json, Reader& reader) {
+    Controller controller;
+    controller_contract().read(json, controller, reader);
+    if (const auto* npid = std::get_if<Npid>(&controller); npid != nullptr && !npid->delta_r)
+        reader.fault_at("delta_r",
+                        "delta_r is missing; the nonlinear form needs the size of error for which it was designed.");
+    return controller;
+}
+
 namespace {
+
+/// The members that belong to one structure each; `structure` "": to none of them.
+void refuse_others(const CodeQuestion& question, std::string_view structure, Reader& reader) {
+    const auto refuse = [&](const char* name, bool given, std::string_view of) {
+        if (given && structure != of)
+            reader.fault_at(name,
+                            std::string(name) + " belongs to the code of a " + std::string(of) + ". Leave it out.");
+    };
+    refuse("r2_min", question.r2_min.has_value(), "cascade");
+    refuse("r2_max", question.r2_max.has_value(), "cascade");
+    refuse("r2_bias", question.r2_bias.has_value(), "cascade");
+    refuse("d0", question.d0.has_value(), "feedforward");
+    refuse("compensator", question.compensator.has_value(), "feedforward");
+}
 
 /// Texts that are numbers become numbers; a text that the contract refuses stays as typed, so that its error can quote
 /// it.
@@ -103,7 +138,7 @@ void read_words(const CodeWords& words, CodeQuestion& question, Reader& reader) 
 
 /// Takes the rules with which the request evaluated the program, for those that the parameters do not name.
 void take_implemented(const CodeWords& words, const Json& request, CodeQuestion& question) {
-    if (!request.is_object() || !request.contains("implement")) return;
+    if (!request.is_object() || !request.contains("implement") || !request.at("implement").is_object()) return;
     GivenDevice given;
     Reader reader;  // a request that was answered has no faults
     implement_contract().read(request.at("implement"), given, reader);
@@ -140,6 +175,7 @@ AskedCode read_asked(const CodeWords& words, const ChosenEntry& found, Reader& r
     AskedCode asked;
     read_words(words, asked.question, reader);
     take_implemented(words, found.request, asked.question);
+    refuse_others(asked.question, structure_of(found.result), reader);
     asked.unit = unit_of(found.result, reader);
     return asked;
 }

@@ -7,6 +7,7 @@
 
 #include "api/chosen_entry.h"
 #include "api/code/code.h"
+#include "api/contract/controller.h"
 #include "api/describe/description.h"
 #include "engine/code/algorithm.h"
 #include "engine/code/print.h"
@@ -23,6 +24,10 @@ struct CodeQuestion {
     bool velocity = false;
     std::optional<code::AntiWindup> anti_windup;
     std::optional<double> tracking_time, u_min, u_max, rate_limit, bias, y0;
+    /// Of a structure: range of r2 and its value at the operating point of a cascade; disturbance there, and which
+    /// compensator, of a feedforward.
+    std::optional<double> r2_min, r2_max, r2_bias, d0;
+    std::optional<std::string> compensator;
 };
 
 /// Read from an object of the parameters as typed, with numbers as numbers.
@@ -35,6 +40,9 @@ struct AskedCode {
     double unit = 1;  ///< seconds in the result's unit of time
 };
 AskedCode read_asked(const CodeWords& words, const ChosenEntry& found, Reader& reader);
+
+/// The controller as it stands in an answer; a nonlinear one with the range of errors for which it was designed.
+Controller read_controller(const Json& controller, Reader& reader);
 
 struct SampleTime {
     double seconds = 0;

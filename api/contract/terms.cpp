@@ -5,12 +5,12 @@
 
 #include "api/contract/check/check_request.h"
 #include "api/contract/range/range_request.h"
+#include "api/contract/request.h"
 #include "api/contract/structure/cascade_call.h"
 #include "api/contract/structure/feedforward_call.h"
 #include "api/contract/structure/interaction_call.h"
 #include "api/contract/structure/level_call.h"
 #include "api/contract/structure/predictor_call.h"
-#include "api/contract/request.h"
 #include "api/csv/time_stamp.h"
 #include "api/describe/body.h"
 

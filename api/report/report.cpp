@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "api/contract/structure/structure_name.h"
 #include "api/json/digest.h"
 #include "api/report/check_words.h"
 #include "api/report/figures.h"
@@ -80,7 +81,7 @@ std::variant<std::string, Problem> report_html(const ResultSource& source, std::
     if (auto problem = read_result(source, found)) return *std::move(problem);
     if (index.empty() && is_of_range(found.result)) return range_report(found, words);
     if (index.empty() && is_of_check(found.result)) return check_report(found, words);
-    if (index.empty() && is_of_structure(found.result)) return structure_report(found, words);
+    if (index.empty() && !structure_of(found.result).empty()) return structure_report(found, words);
     return about_entry(found, index, words, full_report);
 } catch (const Json::exception&) {  // a file that only resembles a result: its members have other types
     return not_a_result();

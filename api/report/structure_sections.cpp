@@ -12,7 +12,8 @@ namespace {
 
 /// In full: the settings are typed as printed here.
 constexpr int kTypedDigits = 6;
-constexpr std::array kSeriesLines = {Line::proposal, Line::today, Line::built, Line::second, Line::limit, Line::setpoint};
+constexpr std::array kSeriesLines = {Line::proposal, Line::today, Line::built,
+                                     Line::second,   Line::limit, Line::setpoint};
 
 JsonLocation place_of(const ReportInput& s, const std::string& pointer) {
     return {s.result.root, s.result.pointer + pointer};
@@ -20,7 +21,8 @@ JsonLocation place_of(const ReportInput& s, const std::string& pointer) {
 
 Html conclusions_of(const ReportInput& s) {
     std::vector<Html> sentences;
-    for (const Json& conclusion : s.result.at("verdict").value()) sentences.emplace_back(conclusion_sentence(conclusion));
+    for (const Json& conclusion : s.result.at("verdict").value())
+        sentences.emplace_back(conclusion_sentence(conclusion));
     if (s.result.at("partial").value() == true)
         sentences.emplace_back("The search was stopped before its end; this is the best result until then.");
     return section("Verdict", list(sentences));
@@ -73,8 +75,9 @@ Html typed_of(const ReportInput& s) {
         std::vector<Row> rows;
         for (const auto& [name, value] : typing.at("settings").value().items())
             rows.push_back({name, figure(typing.at("settings").at(name), kTypedDigits)});
-        out += rows.empty() ? element("p", text_at(settings.at(i).at("loop")) + ": " + text_at(settings.at(i).at("why")))
-                            : table(caption.c_str(), {"Setting", "Value"}, rows);
+        out += rows.empty()
+                   ? element("p", text_at(settings.at(i).at("loop")) + ": " + text_at(settings.at(i).at("why")))
+                   : table(caption.c_str(), {"Setting", "Value"}, rows);
         std::vector<Html> notes;
         for (const Json& note : typing.at("notes").value()) notes.emplace_back(note.value("detail", ""));
         out += list(notes);
@@ -122,10 +125,11 @@ Html responses_of(const ReportInput& s) {
             const std::string name = text_at(signal.at("name")), key = input + "/" + name;
             auto found = std::ranges::find(plots, key, &std::pair<std::string, Plot>::first);
             if (found == plots.end())
-                found = plots.insert(plots.end(), {key, {.title = input_title(input) + ": " + name,
-                                                         .x_label = with_unit("t", s.time),
-                                                         .y_label = name,
-                                                         .traces = {}}});
+                found = plots.insert(plots.end(), {key,
+                                                   {.title = input_title(input) + ": " + name,
+                                                    .x_label = with_unit("t", s.time),
+                                                    .y_label = name,
+                                                    .traces = {}}});
             auto& traces = found->second.traces;
             traces.push_back({.name = series_title(text_at(one.at("of"))),
                               .line = kSeriesLines[traces.size() % kSeriesLines.size()],

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "api/contract/structure/structure_name.h"
 #include "api/report/figures.h"
 
 namespace tunewright::api {
@@ -31,25 +32,29 @@ constexpr Word kSeries[] = {{"design", "Design"},
                             {"static_decoupler", "Static decoupler"},
                             {"simplified_decoupler", "Simplified decoupler"}};
 
-constexpr Word kInputs[] = {{"setpoint", "Set point"},       {"inner_load", "Load at the valve"},
-                            {"outer_load", "Outer load"},    {"disturbance", "Disturbance"},
+constexpr Word kInputs[] = {{"setpoint", "Set point"},        {"inner_load", "Load at the valve"},
+                            {"outer_load", "Outer load"},     {"disturbance", "Disturbance"},
                             {"inflow", "Step of the inflow"}, {"load", "Load"}};
 
 /// Sentences with {names} of figures.
 constexpr Word kConclusions[] = {
     {"unstable", "The loops are not stable together."},
-    {"cascade-pays", "The cascade pays: after a load at the valve the IAE is {gain_inner} times less than with one loop."},
+    {"cascade-pays",
+     "The cascade pays: after a load at the valve the IAE is {gain_inner} times less than with one loop."},
     {"cascade-gains-little",
      "The cascade gains little: after a load at the valve the IAE is {gain_inner} times less than with one loop."},
     {"inner-too-slow",
-     "The inner loop is only {speed_ratio} times as fast as the outer one; {at_least} times is the least for a cascade."},
+     "The inner loop is only {speed_ratio} times as fast as the outer one; {at_least} times is the least for a "
+     "cascade."},
     {"inner-peak-above", "Ms of the inner loop is {Ms}, above its limit {limit}."},
     {"outer-peak-above", "Ms of the outer loop is {Ms}, above its limit {limit}."},
     {"valve-peak-above", "Ms at the valve is {Ms}, above its limit {limit}."},
-    {"near-lowest-rate", "The outflow's largest rate is {rate_over_bound} times the least that any controller reaches."},
+    {"near-lowest-rate",
+     "The outflow's largest rate is {rate_over_bound} times the least that any controller reaches."},
     {"level-above-room", "The level rises to {highest}, above the allowed {allowed}."},
     {"flow-loop-unstable", "With this flow loop the level is not stable."},
-    {"flow-loop-too-slow", "With the flow loop Ms is {Ms}, above {limit}: make the flow loop faster or allow more room."},
+    {"flow-loop-too-slow",
+     "With the flow loop Ms is {Ms}, above {limit}: make the flow loop faster or allow more room."},
     {"feedforward-exact", "With the exact model the disturbance does not move the measurement."},
     {"feedforward-pays", "Feedforward pays: the IAE is {gain} times less than with feedback alone."},
     {"feedforward-gains-little", "Feedforward gains little: the IAE is {gain} times less than with feedback alone."},
@@ -78,11 +83,6 @@ template <std::size_t N>
 std::string word_for(const Word (&words)[N], std::string_view code) {
     const auto* found = std::ranges::find(words, code, &Word::first);
     return found == std::end(words) ? std::string(code) : found->second;
-}
-
-std::string name_of(const Json& result) {
-    const auto found = result.is_object() ? result.find("structure") : result.end();
-    return result.is_object() && found != result.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
 std::size_t length_at(const Json& result, const char* pointer) {
@@ -134,8 +134,8 @@ Figures feedforward_figures(const Json& result) {
                 {"Error that no feedforward avoids", "/peak_bound", "y"}};
     for (std::size_t i = 0; i < length_at(result, "/variants"); ++i) {
         const Json& variant = result["variants"][i];
-        out.push_back({"IAE: " + series_title(variant.value("kind", "")), "/variants/" + std::to_string(i) + "/IAE",
-                       "y time"});
+        out.push_back(
+            {"IAE: " + series_title(variant.value("kind", "")), "/variants/" + std::to_string(i) + "/IAE", "y time"});
     }
     return out;
 }
@@ -156,8 +156,6 @@ Figures interaction_figures(const Json& result) {
 
 }  // namespace
 
-bool is_of_structure(const Json& result) { return !name_of(result).empty(); }
-
 std::string structure_title(std::string_view structure) { return word_for(kStructures, structure); }
 
 std::string conclusion_sentence(const Json& conclusion) {
@@ -172,7 +170,7 @@ std::string conclusion_sentence(const Json& conclusion) {
 }
 
 std::vector<StructureController> structure_controllers(const Json& result) {
-    const std::string structure = name_of(result);
+    const std::string structure = structure_of(result);
     if (structure == "cascade") return {{"Inner", "/inner/controller"}, {"Outer", "/outer/controller"}};
     if (structure == "feedforward") return {{"Feedback", "/feedback"}};
     if (structure == "predictor") return {{"PID in its place", "/pid"}};
@@ -183,7 +181,7 @@ std::vector<StructureController> structure_controllers(const Json& result) {
 }
 
 std::vector<StructureFigure> structure_figures(const Json& result) {
-    const std::string structure = name_of(result);
+    const std::string structure = structure_of(result);
     if (structure == "cascade") return cascade_figures();
     if (structure == "level") return level_figures();
     if (structure == "predictor") return predictor_figures();

@@ -9,9 +9,6 @@
 
 namespace tunewright::api {
 
-/// True if a result is about a structure.
-bool is_of_structure(const Json& result);
-
 /// "Cascade" for "cascade"; an unknown name unchanged.
 std::string structure_title(std::string_view structure);
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "api/contract/structure/structure_name.h"
 #include "api/json/json.h"
 #include "api/json/utf8.h"
 #include "api/report/check_words.h"
@@ -418,7 +419,7 @@ std::string reasons_of(const Json& answer, const std::vector<std::size_t>& order
 
 std::string structure_text(std::string_view answer) try {
     const Json value = parsed_or_null(answer);
-    if (!is_of_structure(value)) return std::string(answer) + "\n";
+    if (structure_of(value).empty()) return std::string(answer) + "\n";
     std::string out;
     if (const auto controllers = structure_controllers(value); !controllers.empty()) {
         Columns table({"controller", "Kp", "Ti", "Td", "Tf"}, 1);

@@ -17,18 +17,13 @@ using structure::CascadeResult;
 
 Error stopped() { return {ErrorKind::cancelled, "", "The design was stopped."}; }
 
-/// The views without those that cannot be drawn: the answer then has no series of them.
-using Views = std::vector<structure::StructureView>;
-void add_view(Views& views, Expected<structure::StructureView> view) {
-    if (view) views.push_back(std::move(*view));
-}
-
 /// What is typed into the user's product for the controller number `place`.
 void add_settings(const StructureRequest& request, const std::string& loop, std::size_t place,
                   const IdealPid& controller, StructureAnswer& out) {
     if (request.devices.empty()) return;
-    const device::DeviceModel& device =
-        request.devices.size() == 1 ? request.devices.front() : request.devices[std::min(place, request.devices.size() - 1)];
+    const device::DeviceModel& device = request.devices.size() == 1
+                                            ? request.devices.front()
+                                            : request.devices[std::min(place, request.devices.size() - 1)];
     if (device.product == nullptr) return;
     auto fitted = device::fit(device, controller);
     out.settings.push_back({loop, fitted ? OrReason<device::Fitted>(std::move(*fitted))
@@ -73,13 +68,10 @@ Expected<CascadeAnswer> answered(const CascadeRequest& request, const RunControl
     }
     out.verdict = conclusions_on(out.result.figures, request.design(), out.single ? &*out.single : nullptr);
     const structure::CascadeDesign limits = request.design();
-    Views views;
-    add_view(views, cascade_view("design", request.plants(), out.result.controllers, &limits));
-    if (out.single) add_view(views, single_view(request.plants(), out.single->controller));
-    if (request.baseline)
-        add_view(views, cascade_view("baseline", request.plants(), {*request.baseline->inner, *request.baseline->outer},
-                                     nullptr));
-    out.drawing = drawing_of(views, request.points);
+    std::optional<CascadeControllers> today;
+    if (request.baseline) today = {*request.baseline->inner, *request.baseline->outer};
+    out.drawing = draw(request.plants(), out.result.controllers, limits, out.single ? &*out.single : nullptr,
+                       today ? &*today : nullptr, request.points);
     add_settings(request, "inner", 0, out.result.controllers.inner, out);
     add_settings(request, "outer", 1, out.result.controllers.outer, out);
     return out;
@@ -92,9 +84,8 @@ Expected<LevelAnswer> answered(const LevelRequest& request, const RunControl&) {
     out.result = std::move(*result);
     out.verdict = conclusions_on(out.result, request.problem);
     const structure::LevelDesign& design = out.result.design;
-    Views views;
-    if (request.problem.gap == 0) add_view(views, level_view(request.problem, design));
-    out.drawing = drawing_of(views, request.points);
+    out.gap = request.problem.gap;
+    out.drawing = draw(request.problem, design, request.points);
     add_settings(request, "level", 0, IdealPid{.Kp = -design.Kc, .Ti = design.Ti}, out);
     return out;
 }
@@ -119,13 +110,7 @@ Expected<FeedforwardAnswer> answered(const FeedforwardRequest& request, const Ru
     out.result = std::move(*result);
     out.partial = out.result.partial;
     out.verdict = conclusions_on(out.result, problem);
-    Views views;
-    for (const structure::FeedforwardVariant& variant : out.result.variants)
-        if (variant.why_not.empty())
-            add_view(views, feedforward_view(name_of(variant.kind), problem, variant.compensator));
-    // The loop's peak is that of each variant.
-    for (std::size_t i = 1; i < views.size(); ++i) views[i].curves.clear();
-    out.drawing = drawing_of(views, request.points);
+    out.drawing = draw(problem, out.result, request.points);
     add_settings(request, "feedback", 0, out.feedback, out);
     return out;
 }
@@ -157,11 +142,8 @@ Expected<PredictorAnswer> given_predictor(const PredictorRequest& request) {
 Expected<PredictorAnswer> answered(const PredictorRequest& request, const RunControl& control) {
     auto out = request.controller ? given_predictor(request) : designed_predictor(request, control);
     if (!out) return out;
-    Views views;
     const auto limit = request.controller ? std::nullopt : std::optional<double>(request.design.Ms);
-    add_view(views, predictor_view(*request.plant, out->controller, limit));
-    if (out->pid) add_view(views, structure::pid_view(*request.plant, *out->pid));
-    out->drawing = drawing_of(views, request.points);
+    out->drawing = draw(*request.plant, out->controller, limit, out->pid ? &*out->pid : nullptr, request.points);
     if (out->pid) add_settings(request, "pid", 0, *out->pid, *out);
     return out;
 }
@@ -249,11 +231,10 @@ Expected<InteractionAnswer> answered(const InteractionRequest& request, const Ru
         out.compared.push_back(std::move(*today));
     }
     out.verdict = conclusions_on(out.figures, out.gains, out.chosen, request.limit.mu, out.cost, blt_cost);
-    Views views;
-    add_view(views, structure::interaction_view("design", plants, out.controllers, request.limit.mu));
+    structure::NamedControllers all{{"design", out.controllers}};
     for (const ComparedControllers& other : out.compared)
-        if (!other.controllers.empty()) add_view(views, structure::interaction_view(other.name, plants, other.controllers, {}));
-    out.drawing = drawing_of(views, request.points);
+        if (!other.controllers.empty()) all.emplace_back(other.name, other.controllers);
+    out.drawing = structure::draw(plants, all, request.limit.mu, request.points);
     for (std::size_t i = 0; i < out.controllers.size(); ++i)
         add_settings(request, "loop_" + std::to_string(i + 1), i, out.controllers[i], out);
     return out;

@@ -1,9 +1,8 @@
 #include "engine/structure/cascade_diagram.h"
+#include "engine/structure/view.h"
 
 #include <memory>
 #include <utility>
-
-#include "engine/structure/drawing.h"
 
 namespace tunewright::structure {
 namespace {

@@ -9,6 +9,7 @@
 #include "engine/blocks/diagram_loop.h"
 #include "engine/blocks/diagram_response.h"
 #include "engine/structure/local_peaks.h"
+#include "engine/structure/view.h"
 
 namespace tunewright::structure {
 namespace {
@@ -71,16 +72,14 @@ std::vector<double> frequencies(const std::vector<Answered>& all, int points) {
     return out;
 }
 
-}  // namespace
+using Views = std::vector<StructureView>;
 
-PeakCurve sensitivity_at(const std::string& loop, const std::shared_ptr<const BlockDiagram>& diagram, int signal,
-                         std::optional<double> limit) {
-    return {loop, limit, [diagram, signal](double omega) {
-                return std::abs(diagram->response({0, omega}, signal)[signal]);
-            }};
+/// A view that cannot be made is left out.
+void add(Views& views, Expected<StructureView> view) {
+    if (view) views.push_back(std::move(*view));
 }
 
-StructureDrawing drawing_of(const std::vector<StructureView>& views, int points) {
+StructureDrawing drawing_of(const Views& views, int points) {
     StructureDrawing out;
     if (points < 2) return out;
     std::vector<Answered> all;
@@ -96,6 +95,55 @@ StructureDrawing drawing_of(const std::vector<StructureView>& views, int points)
             out.curves.push_back(std::move(drawn));
         }
     return out;
+}
+
+}  // namespace
+
+PeakCurve sensitivity_at(const std::string& loop, const std::shared_ptr<const BlockDiagram>& diagram, int signal,
+                         std::optional<double> limit) {
+    return {loop, limit, [diagram, signal](double omega) {
+                return std::abs(diagram->response({0, omega}, signal)[signal]);
+            }};
+}
+
+StructureDrawing draw(const CascadePlants& plants, const CascadeControllers& controllers, const CascadeDesign& limits,
+                      const SingleLoop* single, const CascadeControllers* baseline, int points) {
+    Views views;
+    add(views, cascade_view("design", plants, controllers, &limits));
+    if (single != nullptr) add(views, single_view(plants, single->controller));
+    if (baseline != nullptr) add(views, cascade_view("baseline", plants, *baseline, nullptr));
+    return drawing_of(views, points);
+}
+
+StructureDrawing draw(const LevelProblem& problem, const LevelDesign& design, int points) {
+    Views views;
+    if (problem.gap == 0) add(views, level_view(problem, design));
+    return drawing_of(views, points);
+}
+
+StructureDrawing draw(const FeedforwardProblem& problem, const FeedforwardResult& result, int points) {
+    Views views;
+    for (const FeedforwardVariant& variant : result.variants)
+        if (variant.why_not.empty()) add(views, feedforward_view(problem, variant));
+    // The loop's peak is that of each variant.
+    for (std::size_t i = 1; i < views.size(); ++i) views[i].curves.clear();
+    return drawing_of(views, points);
+}
+
+StructureDrawing draw(const PlantMatrix& plants, const NamedControllers& controllers, double limit, int points) {
+    Views views;
+    for (std::size_t i = 0; i < controllers.size(); ++i)
+        add(views, interaction_view(controllers[i].first, plants, controllers[i].second,
+                                    i == 0 ? std::optional<double>(limit) : std::nullopt));
+    return drawing_of(views, points);
+}
+
+StructureDrawing draw(const LinearPlant& plant, const PredictorController& controller, std::optional<double> limit,
+                      const IdealPid* pid, int points) {
+    Views views;
+    add(views, predictor_view(plant, controller, limit));
+    if (pid != nullptr) add(views, pid_view(plant, *pid));
+    return drawing_of(views, points);
 }
 
 }  // namespace tunewright::structure

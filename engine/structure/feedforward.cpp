@@ -9,8 +9,8 @@
 #include "engine/blocks/diagram_response.h"
 #include "engine/blocks/diagram_stability.h"
 #include "engine/numerics/optimise/direct_search.h"
-#include "engine/structure/drawing.h"
 #include "engine/structure/loop_design.h"
+#include "engine/structure/view.h"
 
 namespace tunewright::structure {
 namespace {
@@ -182,6 +182,11 @@ FeedforwardVariant unbuilt(FeedforwardKind kind, std::string why) {
 
 }  // namespace
 
+const char* name_of(FeedforwardKind kind) {
+    constexpr const char* kNames[] = {"none", "static", "inverse", "guzman_hagglund", "optimum", "given"};
+    return kNames[std::size_t(kind)];
+}
+
 Expected<FeedforwardVariant> judge_feedforward(const FeedforwardProblem& problem,
                                                const std::optional<Feedforward>& compensator) {
     const auto diagram = diagram_of(problem.plant, problem.disturbance, problem.feedback, compensator);
@@ -234,12 +239,11 @@ Expected<FeedforwardResult> design_feedforward(const FeedforwardProblem& problem
     return out;
 }
 
-Expected<StructureView> feedforward_view(const std::string& of, const FeedforwardProblem& problem,
-                                         const std::optional<Feedforward>& compensator) {
-    auto diagram = diagram_of(problem.plant, problem.disturbance, problem.feedback, compensator);
+Expected<StructureView> feedforward_view(const FeedforwardProblem& problem, const FeedforwardVariant& variant) {
+    auto diagram = diagram_of(problem.plant, problem.disturbance, problem.feedback, variant.compensator);
     if (!diagram) return diagram.error();
     const auto blocks = std::make_shared<const BlockDiagram>(diagram->blocks);
-    return StructureView{.of = of,
+    return StructureView{.of = name_of(variant.kind),
                          .diagram = std::move(diagram->blocks),
                          .inputs = {{"disturbance", diagram->d}},
                          .outputs = {{"y", diagram->y}, {"u", diagram->u}},

@@ -47,6 +47,9 @@ enum class FeedforwardKind {
     given,    ///< the user's
 };
 
+/// "static" for gain, "guzman_hagglund" for rule.
+const char* name_of(FeedforwardKind kind);
+
 struct FeedforwardVariant {
     FeedforwardKind kind = FeedforwardKind::none;
     std::optional<Feedforward> compensator;  ///< empty: none, or it cannot be built

@@ -154,8 +154,8 @@ void add_loop_commands(CommandTree& tree) {
                                      {"feedforward", "A compensator from a measured disturbance"},
                                      {"interaction", "Controllers of two or three loops that disturb each other"},
                                      {"predictor", "A dead-time compensator, and the PID of the same Ms"}})
-        add_request_command(tree, name, name, help, "The request of POST /v1/" + std::string(name) +
-                                                        " as JSON; - reads standard input");
+        add_request_command(tree, name, name, help,
+                            "The request of POST /v1/" + std::string(name) + " as JSON; - reads standard input");
 
     IdentifyCommand& identifying = tree.keep<IdentifyCommand>();
     CLI::App& identify_app =

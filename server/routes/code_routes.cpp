@@ -54,6 +54,11 @@ void add_code_routes(http::Router& router, JobService& jobs, ComputeSlots& reade
             return api::controller_code({job.result, job.request}, call.path.at("index"), words_of(call));
         });
     });
+    router.add("GET", "/v1/jobs/{id}/code", [&](const Call& call) {
+        return get_code(jobs, readers, call, [&](const JobRecord& job) {
+            return api::structure_code({job.result, job.request}, words_of(call));
+        });
+    });
     router.add("GET", "/v1/jobs/{id}/schedule/code", [&](const Call& call) {
         return get_code(jobs, readers, call, [&](const JobRecord& job) {
             return api::schedule_code({job.result, job.request}, words_of(call));

@@ -87,14 +87,10 @@ void write_wrong(const FeedforwardVariant& v, Writer& out) {
     out.end_object();
 }
 
-const Words<structure::FeedforwardKind>& kind_words() {
+Words<structure::FeedforwardKind> kind_words() {
     using enum structure::FeedforwardKind;
-    static const Words<structure::FeedforwardKind> words{{"none", none},
-                                                         {"static", gain},
-                                                         {"inverse", inverse},
-                                                         {"guzman_hagglund", rule},
-                                                         {"optimum", optimum},
-                                                         {"given", given}};
+    Words<structure::FeedforwardKind> words;
+    for (const auto kind : {none, gain, inverse, rule, optimum, given}) words.emplace_back(name_of(kind), kind);
     return words;
 }
 
@@ -106,8 +102,7 @@ const Description<FeedforwardVariant>& variant_contract() {
                 [member](const V& v, Writer& out) { v.why_not.empty() ? out.number(v.figures.*member) : out.null(); };
         };
         Description<V> d("FeedforwardVariant", "A compensator and its figures after a unit step of the disturbance.");
-        d.field("kind", &V::kind,
-                only_answered(choice<structure::FeedforwardKind>(kind_words())),
+        d.field("kind", &V::kind, only_answered(choice<structure::FeedforwardKind>(kind_words())),
                 "none: feedback alone; static: the gain alone; inverse: lead, lag and delay of both plants; "
                 "guzman_hagglund: the rule of 2011; optimum: the least IAE.")
             .field(
@@ -138,8 +133,6 @@ const Description<FeedforwardVariant>& variant_contract() {
 }
 
 }  // namespace
-
-std::string name_of(structure::FeedforwardKind kind) { return word_of(kind_words(), kind); }
 
 const Description<FeedforwardRequest>& feedforward_request_contract() {
     static const auto description = [] {

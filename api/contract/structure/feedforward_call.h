@@ -22,9 +22,6 @@ struct FeedforwardRequest : StructureRequest {
 };
 const Description<FeedforwardRequest>& feedforward_request_contract();
 
-/// The name of a variant.
-std::string name_of(structure::FeedforwardKind kind);
-
 struct FeedforwardAnswer : StructureAnswer {
     IdealPid feedback;
     structure::FeedforwardResult result;

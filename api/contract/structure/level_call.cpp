@@ -128,6 +128,9 @@ const Description<LevelAnswer>& level_answer_contract() {
         d.field(
              "design", {}, [](const A& a, Writer& out) { level_design_contract().write(a.result.design, out); },
              [](SchemaBook& book) { return level_design_contract().schema(book); }, "The controller.")
+            .field(
+                "gap", {}, [](const A& a, Writer& out) { out.number(a.gap); }, number().schema,
+                "Deviation within which the controller rests.", {.unit = "y"}, [](const A& a) { return a.gap == 0; })
             .field("bound", {}, [](const A& a, Writer& out) { out.number(a.result.bound); }, number().schema,
                    "The rate of the outflow that no controller undercuts which keeps the level in its room.",
                    {.unit = "u/time"})

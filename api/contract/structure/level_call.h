@@ -12,6 +12,7 @@ const Description<LevelRequest>& level_request_contract();
 
 struct LevelAnswer : StructureAnswer {
     structure::LevelResult result;
+    double gap = 0;
 };
 const Description<LevelAnswer>& level_answer_contract();
 

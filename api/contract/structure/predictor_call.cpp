@@ -64,6 +64,20 @@ void check_predictor(const Json& value, PredictorRequest& request, Reader& reade
                             std::string(name) + " belongs to a design, and controller is given. Remove one of them.");
 }
 
+void write_model(const structure::PredictorModel& model, Writer& out) {
+    out.begin_object();
+    out.key("K").number(model.K);
+    if (!model.integrating) out.key("T").number(model.T);
+    out.key("L").number(model.L);
+    out.end_object();
+}
+
+Json model_schema(SchemaBook&) {
+    const Json number{{"type", "number"}};
+    return {
+        {"type", "object"}, {"properties", {{"K", number}, {"T", number}, {"L", number}}}, {"required", {"K", "L"}}};
+}
+
 const Description<structure::PredictorFigures>& predictor_figures_contract() {
     static const auto description = [] {
         using F = structure::PredictorFigures;
@@ -147,6 +161,9 @@ const Description<PredictorAnswer>& predictor_answer_contract() {
              "controller", {},
              [](const A& a, Writer& out) { predictor_controller_contract().write(a.controller, out); },
              object(predictor_controller_contract()).schema, "C and F.")
+            .field(
+                "model", {}, [](const A& a, Writer& out) { write_model(a.controller.model, out); }, model_schema,
+                "The model K e^(-Ls)/(T s + 1) in it; without T: K e^(-Ls)/s.")
             .field("lambda", {}, setting(&PredictorController::lambda), number().schema,
                    "Time constant of the response to the set point, without the dead time.", {.unit = "time"},
                    unused(&PredictorController::lambda))

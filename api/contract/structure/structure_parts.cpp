@@ -152,11 +152,6 @@ void write_figures(Writer& out, std::initializer_list<std::pair<const char*, Fig
     out.end_object();
 }
 
-std::string structure_of(const Json& request) {
-    if (!request.is_object() || !request.contains("structure") || !request["structure"].is_string()) return {};
-    return request["structure"];
-}
-
 namespace {
 
 struct DrawingWish {
@@ -223,13 +218,16 @@ const Description<StructureTyping>& structure_typing_contract() {
                 "typing", {},
                 [](const T& t, Writer& out) {
                     if (!t.fitted) return out.null();
-                    settings_answer_contract().write({t.fitted->product, t.fitted->settings, t.fitted->typed,
-                                                      t.fitted->controller, t.fitted->notes, t.fitted->context, {}},
+                    settings_answer_contract().write({t.fitted->product,
+                                                      t.fitted->settings,
+                                                      t.fitted->typed,
+                                                      t.fitted->controller,
+                                                      t.fitted->notes,
+                                                      t.fitted->context,
+                                                      {}},
                                                      out);
                 },
-                [](SchemaBook& book) {
-                    return or_null(answer(settings_answer_contract()).schema)(book);
-                },
+                [](SchemaBook& book) { return or_null(answer(settings_answer_contract()).schema)(book); },
                 "The settings, as POST /v1/controllers/{id}/settings answers.")
             .field(
                 "why", {}, [](const T& t, Writer& out) { out.text(t.fitted.why); }, words().schema,

@@ -43,9 +43,6 @@ struct StructureAnswer {
     structure::Conclusions verdict;
 };
 
-/// The member `structure` of a request for a job, "" if it has none.
-std::string structure_of(const Json& request);
-
 /// {"code", "figures"}.
 const Description<structure::Conclusion>& conclusion_contract();
 const Description<StructureTyping>& structure_typing_contract();
@@ -64,7 +61,8 @@ void add_structure_name(Description<T>& d, const char* structure) {
     d.field(
         "structure",
         [structure](const Json& value, T&, Reader& reader) {
-            if (value != structure) reader.fault("structure is " + shown(value) + "; here it must be " + structure + ".");
+            if (value != structure)
+                reader.fault("structure is " + shown(value) + "; here it must be " + structure + ".");
         },
         [structure](const T&, Writer& out) { out.text(structure); },
         [structure](SchemaBook&) {
@@ -85,8 +83,9 @@ void add_structure_members(Description<Request>& d, const char* structure) {
          "evaluate", [wish = drawing_wish()](const Json& v, Request& r, Reader& reader) { wish.read(v, r, reader); },
          {}, drawing_wish().schema, "points of each series of the drawing, default 200; 0: none.")
         .field(
-            "implement", [wish = devices_wish()](const Json& v, Request& r, Reader& reader) { wish.read(v, r, reader); },
-            {}, devices_wish().schema,
+            "implement",
+            [wish = devices_wish()](const Json& v, Request& r, Reader& reader) { wish.read(v, r, reader); }, {},
+            devices_wish().schema,
             "The user's controller as for one loop; or a list, one for each controller in the order of the answer.")
         .check([](const Json&, Request& r, Reader& reader) { resolve_devices(r, reader); });
     add_terms(d);
@@ -101,12 +100,14 @@ void add_answer_members(Description<Answered>& d) {
         .field("verdict", &A::verdict, list_of(answer(conclusion_contract())), "Conclusions.")
         .field("settings", &A::settings,
                unless<std::vector<StructureTyping>>(list_of(answer(structure_typing_contract())),
-                                                  [](const auto& all) { return all.empty(); }),
+                                                    [](const auto& all) { return all.empty(); }),
                "With implement: what is typed into the user's controller.")
-        .field("responses", {}, [](const Answered& a, Writer& out) { write_responses(a.drawing, out); },
-               responses_schema, "Series over time; the steps have the size 1, or the largest step of a level.")
-        .field("sensitivities", {}, [](const Answered& a, Writer& out) { write_curves(a.drawing, out); }, curves_schema,
-               "|S| over frequency, of the loop broken at one place, and mu.")
+        .field(
+            "responses", {}, [](const Answered& a, Writer& out) { write_responses(a.drawing, out); }, responses_schema,
+            "Series over time; the steps have the size 1, or the largest step of a level.")
+        .field(
+            "sensitivities", {}, [](const Answered& a, Writer& out) { write_curves(a.drawing, out); }, curves_schema,
+            "|S| over frequency, of the loop broken at one place, and mu.")
         .field("units", &A::units, only_answered(maybe(object(units_contract()))), "As in the request.")
         .field("request_hash", &A::request_hash,
                unless<std::string>(words(), [](const std::string& hash) { return hash.empty(); }),

@@ -1,0 +1,164 @@
+#include "api/code/structure_program.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "api/code/parameters.h"
+#include "api/code/printed.h"
+#include "api/code/provenance.h"
+#include "engine/code/settings.h"
+#include "engine/structure/program/loop_programs.h"
+#include "engine/structure/program/predictor_program.h"
+
+namespace tunewright::api {
+namespace {
+
+using structure::Feedforward;
+
+/// What every program needs: the answer, the parameters, and the controllers, whose times are in the answer's unit.
+struct Source {
+    const Json& answer;
+    const AskedCode& asked;
+    std::vector<ParallelPid> controllers;
+    double Ts = 0;  ///< s
+
+    SampledPid law(std::size_t k) const {
+        SampledPid law = law_of(asked, controllers.at(k));
+        law.Ts = Ts;
+        return law;
+    }
+    code::CodeOptions options() const { return options_of(asked, answer); }
+    double seconds(const Json& time) const { return time.get<double>() * asked.unit; }
+};
+
+Feedforward compensator_of(const Json& compensator, const Source& s) {
+    return {.Kf = compensator.at("Kf").get<double>(),
+            .Tz = s.seconds(compensator.at("Tz")),
+            .Tp = s.seconds(compensator.at("Tp")),
+            .Lf = s.seconds(compensator.at("Lf"))};
+}
+
+/// Coefficients of a fraction of s in seconds.
+structure::Rational rational_of(const Json& fraction, double unit) {
+    const auto in_seconds = [unit](std::vector<double> coefficients) {
+        double factor = 1;
+        for (auto c = coefficients.rbegin(); c != coefficients.rend(); ++c, factor *= unit) *c *= factor;
+        return coefficients;
+    };
+    return {in_seconds(fraction.at("num").get<std::vector<double>>()),
+            in_seconds(fraction.at("den").get<std::vector<double>>())};
+}
+
+structure::PredictorController predictor_of(const Json& answer, double unit) {
+    const Json& model = answer.at("model");
+    structure::PredictorController out;
+    out.C = rational_of(answer.at("controller").at("C"), unit);
+    out.F = rational_of(answer.at("controller").at("F"), unit);
+    out.model = {.K = model.at("K").get<double>(), .L = model.at("L").get<double>() * unit};
+    out.model.integrating = !model.contains("T");
+    if (out.model.integrating)
+        out.model.K /= unit;
+    else
+        out.model.T = model.at("T").get<double>() * unit;
+    return out;
+}
+
+/// The controllers of the answer, in the order in which the programs take them.
+Expected<std::vector<ParallelPid>> controllers_in(const Json& answer, Reader& reader) {
+    const std::string structure = answer.at("structure");
+    if (structure == "level") {
+        const Json& design = answer.at("design");
+        IdealPid pid{.Kp = -design.at("Kc").get<double>()};
+        pid.Ti = design.at("Ti").is_number() ? design.at("Ti").get<double>() : std::numeric_limits<double>::infinity();
+        return std::vector{to_parallel(pid)};
+    }
+    if (structure == "predictor") {
+        auto pid = structure::predictor_pid(predictor_of(answer, 1));
+        if (!pid) return pid.error();
+        return std::vector{*pid};
+    }
+    std::vector<const Json*> all;
+    if (structure == "cascade")
+        all = {&answer.at("inner").at("controller"), &answer.at("outer").at("controller")};
+    else if (structure == "feedforward")
+        all = {&answer.at("feedback")};
+    else
+        for (const Json& one : answer.at("controllers")) all.push_back(&one);
+    std::vector<ParallelPid> out;
+    for (const Json* one : all) out.push_back(gains(read_controller(*one, reader)));
+    return out;
+}
+
+/// The compensator that was asked for, else the last that can be built. Null if there is none.
+const Json* chosen_compensator(const Json& answer, const CodeQuestion& question) {
+    const Json* found = nullptr;
+    for (const Json& variant : answer.at("variants"))
+        if (variant.at("compensator").is_object() &&
+            (!question.compensator || variant.at("kind") == *question.compensator))
+            found = &variant.at("compensator");
+    return found;
+}
+
+Expected<code::Program> program_of(const Source& s) {
+    const std::string structure = s.answer.at("structure");
+    const CodeQuestion& question = s.asked.question;
+    if (structure == "cascade") {
+        code::CodeOptions r2;
+        r2.anti_windup = s.options().anti_windup;
+        r2.u_min = question.r2_min;
+        r2.u_max = question.r2_max;
+        r2.bias = question.r2_bias.value_or(0);
+        r2.y0 = s.options().y0;
+        return structure::cascade_program(s.law(0), s.law(1), s.options(), r2);
+    }
+    if (structure == "level") return structure::level_program(s.law(0), s.options(), s.answer.value("gap", 0.0));
+    if (structure == "predictor")
+        return structure::predictor_program(predictor_of(s.answer, s.asked.unit), s.Ts, s.options());
+    if (structure == "feedforward") {
+        const Json* compensator = chosen_compensator(s.answer, question);
+        if (compensator == nullptr)
+            return Error{ErrorKind::invalid_argument, "compensator",
+                         "The answer has no such compensator that can be built. Choose another."};
+        return structure::feedforward_program(s.law(0), compensator_of(*compensator, s), s.options(),
+                                              question.d0.value_or(0));
+    }
+    std::vector<SampledPid> laws;
+    for (std::size_t k = 0; k < s.controllers.size(); ++k) laws.push_back(s.law(k));
+    return structure::interaction_program(laws, std::vector(laws.size(), s.options()));
+}
+
+/// The controller that needs the shortest sample time.
+ParallelPid fastest(const AskedCode& asked, const std::vector<ParallelPid>& controllers) {
+    const auto proposed = [&](const ParallelPid& one) {
+        return code::proposed_sample_time(law_of(asked, one).gains).value_or(std::numeric_limits<double>::infinity());
+    };
+    return law_of(asked, *std::ranges::min_element(controllers, {}, proposed)).gains;
+}
+
+code::Provenance provenance_of_structure(const Json& answer, const Json& request) {
+    code::Provenance rows = provenance_of(answer, Json::object(), request);
+    rows.insert(rows.begin(), {"Structure", answer.at("structure").get<std::string>()});
+    for (const Json& conclusion : answer.at("verdict"))
+        rows.emplace_back("Verdict", conclusion.at("code").get<std::string>());
+    return rows;
+}
+
+}  // namespace
+
+std::variant<ControllerCode, Problem> written_structure(const ChosenEntry& found, const CodeWords& words) {
+    Reader reader;
+    const AskedCode asked = read_asked(words, found, reader);
+    const auto controllers = controllers_in(found.result, reader);
+    if (auto problem = reader.problem()) return *std::move(problem);
+    if (!controllers) return to_problem(controllers.error());
+    const auto sample_time = sample_time_of(asked, found.request, fastest(asked, *controllers), Json::object());
+    if (const auto* problem = std::get_if<Problem>(&sample_time)) return *problem;
+    const auto& chosen = std::get<SampleTime>(sample_time);
+    const auto program = program_of({found.result, asked, *controllers, chosen.seconds});
+    if (!program) return to_problem(program.error());
+    return printed(*program, asked.question.language, provenance_of_structure(found.result, found.request), chosen);
+}
+
+}  // namespace tunewright::api

@@ -142,13 +142,6 @@ std::string real_literal(double value, char exponent) {
 
 std::string indentation(int depth) { return std::string(static_cast<std::size_t>(4 * depth), ' '); }
 
-std::vector<Declaration> of_role(const Program& program, VariableRole role) {
-    std::vector<Declaration> out;
-    for (const Declaration& variable : program.variables)
-        if (variable.role == role) out.push_back(variable);
-    return out;
-}
-
 std::string example_setting(const Program& program) {
     const auto settings = of_role(program, VariableRole::parameter);
     for (const char* name : {"Kp", "u_max"})

@@ -60,8 +60,6 @@ std::vector<std::string> head_lines(const Program& program, const Provenance& pr
 
 std::string indentation(int depth);
 
-std::vector<Declaration> of_role(const Program& program, VariableRole role);
-
 /// The program's type: its name in capitals at the beginning, "TunewrightPid".
 std::string type_name(const Program& program);
 

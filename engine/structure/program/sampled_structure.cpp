@@ -22,9 +22,9 @@ namespace {
 using Index = std::size_t;
 
 constexpr int kMaxCalls = 60000;
-constexpr double kSettled = 1e-6;    // of each signal's largest deviation
-constexpr double kWindow = 1.5;      // a response has settled if it rests from some time until this many times that time
-constexpr int kFirstCalls = 40;      // and two dead times: before that no response has settled
+constexpr double kSettled = 1e-6;  // of each signal's largest deviation
+constexpr double kWindow = 1.5;    // a response has settled if it rests from some time until this many times that time
+constexpr int kFirstCalls = 40;    // and two dead times: before that no response has settled
 constexpr Index kFinerSpectrum = 4;  // frequencies for each call
 constexpr int kSections = 30;        // of the golden section between two of them
 
@@ -44,7 +44,8 @@ public:
         borders_.erase(std::unique(borders_.begin(), borders_.end()), borders_.end());
         for (Path& path : paths_) {
             path.x.assign(static_cast<Index>(path.motion.states()), 0.0);
-            for (Index m = 1; m < borders_.size(); ++m) path.steps.push_back(path.motion.step(borders_[m] - borders_[m - 1]));
+            for (Index m = 1; m < borders_.size(); ++m)
+                path.steps.push_back(path.motion.step(borders_[m] - borders_[m - 1]));
         }
     }
 
@@ -182,7 +183,8 @@ private:
 
     /// 1 at the time and the place of the pulse.
     double pulse(int k, bool at_plant_input, Index signal) const {
-        return pulse_ != nullptr && k == 0 && pulse_->at_plant_input == at_plant_input && pulse_->signal == signal ? 1 : 0;
+        return pulse_ != nullptr && k == 0 && pulse_->at_plant_input == at_plant_input && pulse_->signal == signal ? 1
+                                                                                                                   : 0;
     }
 
     /// By how much the program moves a signal.
@@ -276,8 +278,12 @@ Expected<SampledScene> cascade_scene(const CascadePlants& plants) {
         .plants = {{*whole, plants.outer}, {plants.inner, std::nullopt}},
         .measurements = {"measurement", "inner_measurement"},
         .outputs = {"u"},
-        .rest = {{"setpoint", "outer_y0"}, {"measurement", "outer_y0"}, {"inner_measurement", "r2_bias"},
-                 {"inner_setpoint", "r2_bias"}, {"r2", "r2_bias"}, {"u", "bias"}},
+        .rest = {{"setpoint", "outer_y0"},
+                 {"measurement", "outer_y0"},
+                 {"inner_measurement", "r2_bias"},
+                 {"inner_setpoint", "r2_bias"},
+                 {"r2", "r2_bias"},
+                 {"u", "bias"}},
         .steps = {{"inner_load", {}, {{0, 1}}}, {"outer_load", {}, {{1, 1}}}, {"setpoint", {{"setpoint", 1}}, {}, {1}}},
         .places = {{"inner", false, 1, {{"cascade_on", -1}}}, {"outer", false, 0}, {"valve", true, 0}}};
 }

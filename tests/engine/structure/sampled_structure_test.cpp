@@ -42,7 +42,8 @@ void expect_first_order(double coarse, double fine, double limit, double near, c
 TEST(SampledStructure, ASingleControllerIsTheSampledLoopOfItsOwnRoom) {
     // Peaks by the pulse transfer function, figures by the response of another simulation.
     const LinearPlant plant = first_order(2, 10, 3.7);  // 3.7 is no multiple of 0.5
-    SampledPid law{.gains = to_parallel(IdealPid{.Kp = 0.9, .Ti = 9, .Td = 1.2, .filter = {FilterType::measurement_second_order, 0.6}}),
+    SampledPid law{.gains = to_parallel(
+                       IdealPid{.Kp = 0.9, .Ti = 9, .Td = 1.2, .filter = {FilterType::measurement_second_order, 0.6}}),
                    .Ts = 0.5};
     const SampledAnswer own = answer(code::pid_algorithm(law, {}), loop_scene(plant));
     EXPECT_NEAR(*own.Ms.at("loop"), SampledLoop(plant, law).sensitivity_peak().value, 1e-6);
@@ -54,8 +55,9 @@ TEST(SampledStructure, ASingleControllerIsTheSampledLoopOfItsOwnRoom) {
     EXPECT_NEAR(figures(own, "load").TV, expected.TV, 1e-5);
 
     const StepResponse limited = simulate_sampled(plant, law, {.output = ActuatorLimits{-0.3, 0.7}}, {.r = 1}, {});
-    const SampledAnswer held = answer(
-        code::pid_algorithm(law, {.anti_windup = code::AntiWindup::clamping, .u_min = -0.3, .u_max = 0.7}), loop_scene(plant));
+    const SampledAnswer held =
+        answer(code::pid_algorithm(law, {.anti_windup = code::AntiWindup::clamping, .u_min = -0.3, .u_max = 0.7}),
+               loop_scene(plant));
     EXPECT_NEAR(figures(held, "setpoint").IAE, figures_of(limited, 1).IAE, 1e-3 * figures_of(limited, 1).IAE);
 }
 
@@ -65,14 +67,16 @@ TEST(SampledStructure, ACascadeBecomesTheContinuousOne) {
         const auto limit = judge_cascade(plants, {pi(0.8, 6), pi(0.6, 70)});
         ASSERT_TRUE(limit && limit->stable);
         const auto run = [&](double Ts) {
-            return answer(cascade_program(sampled_pi(0.8, 6, Ts), sampled_pi(0.6, 70, Ts), {}, {}), *cascade_scene(plants));
+            return answer(cascade_program(sampled_pi(0.8, 6, Ts), sampled_pi(0.6, 70, Ts), {}, {}),
+                          *cascade_scene(plants));
         };
         const SampledAnswer coarse = run(0.6), fine = run(0.15);
         expect_first_order(*coarse.Ms.at("inner"), *fine.Ms.at("inner"), limit->Ms_inner, 0.02, "Ms inner");
         expect_first_order(*coarse.Ms.at("outer"), *fine.Ms.at("outer"), limit->Ms_outer, 0.02, "Ms outer");
         expect_first_order(*coarse.Ms.at("valve"), *fine.Ms.at("valve"), limit->Ms_valve, 0.02, "Ms valve");
         for (const auto& [name, load] : {std::pair{"inner_load", &limit->inner_load},
-                                         {"outer_load", &limit->outer_load}, {"setpoint", &limit->setpoint}}) {
+                                         {"outer_load", &limit->outer_load},
+                                         {"setpoint", &limit->setpoint}}) {
             expect_first_order(figures(coarse, name).IAE, figures(fine, name).IAE, load->IAE, 0.02, name);
             EXPECT_TRUE(figures(fine, name).settles) << name;
         }
@@ -88,10 +92,10 @@ TEST(SampledStructure, PredictorsBecomeTheContinuousOnesWhateverTheModelIs) {
         PredictorKind kind;
         double Ms;
     };
-    for (const Case& c : {Case{{.K = 5.6, .T = 40.2, .L = 93.9}, first_order(5.6, 40.2, 93.9), PredictorKind::smith, 1.6},
-                          {{.K = 5.6, .T = 40.2, .L = 93.9}, first_order(5, 38, 97), PredictorKind::filtered_smith, 1.6},
-                          {{.K = 0.2, .L = 5, .integrating = true}, transfer({0.2}, {1, 0}, 5),
-                           PredictorKind::filtered_smith, 1.7}}) {
+    for (const Case& c :
+         {Case{{.K = 5.6, .T = 40.2, .L = 93.9}, first_order(5.6, 40.2, 93.9), PredictorKind::smith, 1.6},
+          {{.K = 5.6, .T = 40.2, .L = 93.9}, first_order(5, 38, 97), PredictorKind::filtered_smith, 1.6},
+          {{.K = 0.2, .L = 5, .integrating = true}, transfer({0.2}, {1, 0}, 5), PredictorKind::filtered_smith, 1.7}}) {
         const auto design = design_predictor(c.model, c.plant, {.kind = c.kind, .Ms = c.Ms}, {});
         ASSERT_TRUE(design) << design.error().message;
         const PredictorFigures& limit = design->figures;
@@ -127,14 +131,14 @@ TEST(SampledStructure, APredictorOnAnUnstableModelRunsWithoutDrift) {
 TEST(SampledStructure, FeedforwardBecomesTheContinuousOne) {
     const LinearPlant plant = first_order(1.5, 60, 15), disturbance = first_order(1, 15, 4);
     const Feedforward part{.Kf = 0.6, .Tz = 50, .Tp = 12, .Lf = 1.3};
-    const auto limit =
-        judge_feedforward({.plant = plant, .disturbance = disturbance, .feedback = pi(1.2, 60)}, part);
+    const auto limit = judge_feedforward({.plant = plant, .disturbance = disturbance, .feedback = pi(1.2, 60)}, part);
     ASSERT_TRUE(limit);
     const auto run = [&](double Ts) {
         return answer(feedforward_program(sampled_pi(1.2, 60, Ts), part, {}), feedforward_scene(plant, disturbance));
     };
     const SampledAnswer coarse = run(1.2), fine = run(0.3);
-    expect_first_order(figures(coarse, "disturbance").IAE, figures(fine, "disturbance").IAE, limit->figures.IAE, 0.02, "IAE");
+    expect_first_order(figures(coarse, "disturbance").IAE, figures(fine, "disturbance").IAE, limit->figures.IAE, 0.02,
+                       "IAE");
     // With integral action the integral error hardly depends on Ts: (K Kf - Kd) Ti/(K Kp).
     constexpr double kIE = (1.5 * 0.6 - 1) * 60 / (1.5 * 1.2);
     EXPECT_NEAR(figures(coarse, "disturbance").IE, kIE, 1e-3 * std::abs(kIE));
@@ -177,13 +181,14 @@ TEST(SampledStructure, ALevelRisesAsInItsClosedForm) {
     const auto design = design_level(problem);
     ASSERT_TRUE(design);
     const auto run = [&](double Ts) {
-        const SampledPid law{.gains = {.Kp = -design->design.Kc, .Ki = -design->design.Kc / design->design.Ti}, .Ts = Ts};
+        const SampledPid law{.gains = {.Kp = -design->design.Kc, .Ki = -design->design.Kc / design->design.Ti},
+                             .Ts = Ts};
         return answer(level_program(law, {.bias = 50, .y0 = 40}), level_scene(12, {}), {{"load", 4}});
     };
     const SampledAnswer coarse = run(0.2), fine = run(0.05);
     expect_first_order(figures(coarse, "load").peak, figures(fine, "load").peak, 1.8, 0.01, "highest");
-    expect_first_order(coarse.responses[0].largest_rate, fine.responses[0].largest_rate, design->design.largest_rate, 0.03,
-                       "rate of the outflow");
+    expect_first_order(coarse.responses[0].largest_rate, fine.responses[0].largest_rate, design->design.largest_rate,
+                       0.03, "rate of the outflow");
 }
 
 TEST(SampledStructure, LimitsActAndTheOperatingPointMovesNothing) {
@@ -206,8 +211,8 @@ TEST(SampledStructure, LimitsActAndTheOperatingPointMovesNothing) {
     EXPECT_NEAR(a.y[0].back(), 1.5, 1e-5);
     EXPECT_EQ(*std::ranges::max_element(a.u[0]), 1.5);
     // Peaks are those without limits.
-    const SampledAnswer free = answer(cascade_program(sampled_pi(0.8, 6, 0.5), sampled_pi(1.2, 70, 0.5), {}, {}),
-                                      *cascade_scene(plants));
+    const SampledAnswer free =
+        answer(cascade_program(sampled_pi(0.8, 6, 0.5), sampled_pi(1.2, 70, 0.5), {}, {}), *cascade_scene(plants));
     EXPECT_NEAR(*at_zero.Ms.at("valve"), *free.Ms.at("valve"), 1e-9);
 }
 

@@ -62,9 +62,7 @@ Expected<Program> pid_algorithm(const SampledPid& pid, const CodeOptions& option
     const Plan plan{pid, options, follows_schedule};
     if (const auto fault = timing_fault(plan)) return *fault;
     if (const auto fault = option_fault(plan)) return *fault;
-    Program program = Builder(pid, options).build();
-    program.notes = notes(plan);
-    return program;
+    return Builder(plan).build();
 }
 
 namespace {

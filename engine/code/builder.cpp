@@ -4,18 +4,15 @@ namespace tunewright::code {
 
 void Builder::add_gains() {
     const bool ideal = plan_.settings.ideal;
-    gain_ = local("gain", "Kp with the sign of the action");
     add(remark("The gains with the sign of the action."));
-    add(assign(gain_, Kp_));
+    gain_ = let("gain", "Kp with the sign of the action", Kp_);
     add(when(direct_, {assign(gain_, -Kp_)}));
     if (plan_.integral) {
-        gain_i_ = local("gain_i", "integral gain");
-        add(assign(gain_i_, ideal ? Expr(0.0) : Ki_));
+        gain_i_ = let("gain_i", "integral gain", ideal ? Expr(0.0) : Ki_);
         add(ideal ? when(Ti_ > 0, {assign(gain_i_, gain_ / Ti_)}) : when(direct_, {assign(gain_i_, -Ki_)}));
     }
     if (!plan_.derivative) return;
-    gain_d_ = local("gain_d", "derivative gain");
-    add(assign(gain_d_, ideal ? gain_ * Td_ : Kd_));
+    gain_d_ = let("gain_d", "derivative gain", ideal ? gain_ * Td_ : Kd_);
     if (!ideal) add(when(direct_, {assign(gain_d_, -Kd_)}));
 }
 
@@ -77,15 +74,10 @@ void Builder::add_change_of_settings() {
 void Builder::add_signals() {
     if (plan_.filters_setpoint()) {
         add(remark("The set point's filter: the rest uses its output."));
-        const Expr filtered = local("setpoint_f", "filtered set point");
-        add(assign(filtered, (Tr_ * setpoint_last_ + Ts_ * setpoint_) / (Tr_ + Ts_)));
-        setpoint_ = filtered;
+        setpoint_ = let("setpoint_f", "filtered set point", (Tr_ * setpoint_last_ + Ts_ * setpoint_) / (Tr_ + Ts_));
     }
     add(remark(plan_.smooths() ? "The measurement's filter, and the error." : "The error."));
-    if (!plan_.position) {
-        y_f_last_ = local("y_f_last", "y_f of the last call");
-        add(assign(y_f_last_, y_f_));
-    }
+    if (!plan_.position) y_f_last_ = let("y_f_last", "y_f of the last call", y_f_);
     add_filter();
     if (plan_.integral) {
         if (!(plan_.keeps_error && plan_.options.delta_r)) error_ = local("error", "r - y_f");
@@ -98,9 +90,8 @@ void Builder::add_filter() {
     if (plan_.filter == FilterType::measurement_first_order) {
         add(assign(y_f_, (Tf_ * y_f_ + Ts_ * measurement_) / (Tf_ + Ts_)));
     } else if (plan_.smooths_twice()) {
-        const Expr ratio = local("ratio", "Ts/Tf"), divisor = local("divisor", "of the filter");
-        add(assign(ratio, Ts_ / Tf_));
-        add(assign(divisor, 1 + 2 * ratio + 2 * ratio * ratio));
+        const Expr ratio = let("ratio", "Ts/Tf", Ts_ / Tf_),
+                   divisor = let("divisor", "of the filter", 1 + 2 * ratio + 2 * ratio * ratio);
         add(assign(filter_rate_, (filter_rate_ + 2 * ratio / Tf_ * (measurement_ - y_f_)) / divisor));
         add(assign(y_f_, y_f_ + Ts_ * filter_rate_));
     } else {
@@ -110,8 +101,7 @@ void Builder::add_filter() {
 
 void Builder::add_slope() {
     add(remark("The input of the derivative, and its slope."));
-    lead_ = local("lead", "c r - y_f");
-    add(assign(lead_, c_ * setpoint_ - y_f_));
+    lead_ = let("lead", "c r - y_f", c_ * setpoint_ - y_f_);
     const auto step = [&] { return lead_ - lead_last_; };
     switch (plan_.rule) {
         case DerivativeRule::difference: add(assign(slope_, step() / Ts_)); break;
@@ -141,13 +131,11 @@ void Builder::add_slope() {
 void Builder::add_terms() {
     const bool position = plan_.position;
     add(remark(position ? "The parts of u." : "The increments of the parts of u."));
-    proportional_ = local("proportional", position ? "proportional part" : "increment of the proportional part");
-    add(assign(proportional_,
-               position ? law_part(setpoint_, y_f_) : law_part(setpoint_ - setpoint_last_, y_f_ - y_f_last_)));
-    if (plan_.derivative) {
-        derivative_ = local("derivative", position ? "derivative part" : "increment of the derivative part");
-        add(assign(derivative_, gain_d_ * (position ? slope_ : slope_ - slope_last_)));
-    }
+    proportional_ = let("proportional", position ? "proportional part" : "increment of the proportional part",
+                        position ? law_part(setpoint_, y_f_) : law_part(setpoint_ - setpoint_last_, y_f_ - y_f_last_));
+    if (plan_.derivative)
+        derivative_ = let("derivative", position ? "derivative part" : "increment of the derivative part",
+                          gain_d_ * (position ? slope_ : slope_ - slope_last_));
     if (!plan_.integral) return;
     increment_ = local("increment", "increment of the integral part");
     Expr share = error_;
@@ -164,11 +152,9 @@ void Builder::add_terms() {
 }
 
 void Builder::add_bounds() {
-    low_ = local("low", "smallest u of this call");
-    high_ = local("high", "largest u of this call");
     add(remark("The range of u in this call."));
-    add(assign(low_, u_min_));
-    add(assign(high_, u_max_));
+    low_ = let("low", "smallest u of this call", u_min_);
+    high_ = let("high", "largest u of this call", u_max_);
     Block rate{assign(low_, u_last_ - rate_limit_ * Ts_), assign(high_, u_last_ + rate_limit_ * Ts_)};
     keep_within(rate, low_, u_min_, u_max_);
     keep_within(rate, high_, u_min_, u_max_);

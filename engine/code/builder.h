@@ -1,14 +1,14 @@
 // Builds the program of a controller, part by part in the order in which a call computes them.
 #pragma once
 
+#include "engine/code/composer.h"
 #include "engine/code/plan.h"
-#include "engine/code/program.h"
 
 namespace tunewright::code {
 
-class Builder {
+class Builder : Composer {
 public:
-    Builder(const SampledPid& pid, const CodeOptions& options) : plan_{pid, options} {
+    explicit Builder(const Plan& plan) : plan_(plan) {
         declare_settings();
         declare_states();
     }
@@ -22,27 +22,10 @@ public:
         add_bounds();
         add_output();
         add_memory();
-        return std::move(program_);
+        return take(notes(plan_));
     }
 
 private:
-    Expr input(const char* name, Type type, const char* comment, bool optional = false) {
-        return program_.declare(
-            {.role = VariableRole::input, .type = type, .name = name, .comment = comment, .optional = optional});
-    }
-    Expr setting(const char* name, double value, const char* comment, Type type = Type::real) {
-        return program_.declare(
-            {.role = VariableRole::parameter, .type = type, .name = name, .comment = comment, .initial = value});
-    }
-    Expr state(const char* name, const char* comment, Type type = Type::real, int length = 0) {
-        return program_.declare(
-            {.role = VariableRole::state, .type = type, .name = name, .comment = comment, .length = length});
-    }
-    Expr local(const char* name, const char* comment, Type type = Type::real) {
-        return program_.declare({.role = VariableRole::local, .type = type, .name = name, .comment = comment});
-    }
-    void add(Statement statement) { program_.body.push_back(std::move(statement)); }
-
     void declare_settings();
     void declare_fixed_settings();
     void declare_states();
@@ -69,13 +52,11 @@ private:
         return plan_.options.delta_r ? e * exponential(-(e * e) / (2 * delta_r_ * delta_r_)) : e;
     }
 
-    Plan plan_;
-    Program program_;
-    Expr setpoint_ = input("setpoint", Type::real, "r");
-    Expr measurement_ = input("measurement", Type::real, "y");
-    Expr manual_ = input("manual", Type::boolean, "true: u is manual_output", true);
-    Expr manual_output_ = input("manual_output", Type::real, "the operator's u", true);
-    Expr u_ = program_.declare({.role = VariableRole::output, .name = "u", .comment = "the controller's output"});
+    const Plan plan_;
+    Expr setpoint_ = input("setpoint", "r"), measurement_ = input("measurement", "y");
+    Expr manual_ = optional_input("manual", "true: u is manual_output", Type::boolean);
+    Expr manual_output_ = optional_input("manual_output", "the operator's u", Type::real);
+    Expr u_ = output("u", "the controller's output");
 
     // Set by the declaring functions, if the plan needs them.
     Expr Kp_ = 0, Ti_ = 0, Td_ = 0, Ki_ = 0, Kd_ = 0, b_ = 0, direct_ = 0, u_min_ = 0, u_max_ = 0, rate_limit_ = 0;

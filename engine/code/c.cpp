@@ -11,7 +11,9 @@ namespace {
 class C : public Dialect {
 public:
     explicit C(const Program& program)
-        : record_(program.name), kept_outputs_(of_role(program, VariableRole::output).size() > 1) {}
+        : Dialect({" != ", " && ", " || ", "!"}),
+          record_(program.name),
+          kept_outputs_(of_role(program, VariableRole::output).size() > 1) {}
 
     std::string real(double value) const override { return real_literal(value, 'e'); }
     std::string boolean(bool value) const override { return value ? "true" : "false"; }
@@ -21,25 +23,6 @@ public:
         return field ? record_ + "->" + place.name : place.name;
     }
     std::string exponential(const std::string& argument) const override { return "exp(" + argument + ")"; }
-    std::string mark(Operation operation) const override {
-        switch (operation) {
-            case Operation::add: return " + ";
-            case Operation::subtract: return " - ";
-            case Operation::multiply: return " * ";
-            case Operation::divide: return " / ";
-            case Operation::less: return " < ";
-            case Operation::greater: return " > ";
-            case Operation::greater_equal: return " >= ";
-            case Operation::not_equal: return " != ";
-            case Operation::logical_and: return " && ";
-            case Operation::logical_or: return " || ";
-            case Operation::negate: return "-";
-            case Operation::logical_not: return "!";
-            case Operation::exponential: break;
-        }
-        return {};
-    }
-
     std::string assign(const std::string& target, const std::string& value) const override {
         return target + " = " + value + ";";
     }

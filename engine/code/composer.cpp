@@ -86,20 +86,21 @@ void Composer::add_bounded(const Expr& x, const Expr& value, const Expr& low, co
     keep_within(program_.body, x, low, high);
 }
 
-void Composer::embed(const Program& part, std::map<std::string, std::string> names, const std::string& prefix,
+void Composer::embed(const Program& part, const std::map<std::string, std::string>& names, const std::string& prefix,
                      const std::string& suffix) {
-    for (const char* name : {"Ts", "at_rest", "restart"}) names.emplace(name, name);
     std::map<std::string, Expr> variables;
     for (Declaration own : part.variables) {
-        const auto given = names.find(own.name);
-        const std::string name = given == names.end() ? prefix + own.name + suffix : given->second;
-        if (given == names.end() ||
-            std::ranges::find(program_.variables, name, &Declaration::name) == program_.variables.end()) {
-            if (own.role == VariableRole::output) own.role = VariableRole::local;
-            const std::string before = std::exchange(own.name, name);
-            variables.emplace(before, program_.declare(std::move(own)));
+        const std::string before = own.name;
+        const auto given = names.find(before);
+        const bool common = before == "Ts" || before == "at_rest" || before == "restart";
+        own.name = given != names.end() ? given->second : common ? before : prefix + before + suffix;
+        const bool private_ = own.role == VariableRole::state || own.role == VariableRole::local;
+        if (std::ranges::find(program_.variables, own.name, &Declaration::name) != program_.variables.end() &&
+            (given != names.end() || !private_)) {
+            variables.emplace(before, (*this)[own.name]);
         } else {
-            variables.emplace(own.name, (*this)[name]);
+            if (own.role == VariableRole::output) own.role = VariableRole::local;
+            variables.emplace(before, program_.declare(std::move(own)));
         }
     }
     const Block body = Rewriter{variables}(part.body);

@@ -22,6 +22,7 @@ struct DiscreteSystem {
 
 class Composer {
 public:
+    Composer() = default;
     /// With the settings `Ts`, `at_rest` and `restart`, which all embedded programs share.
     Composer(std::string name, std::string title, double Ts);
 
@@ -47,8 +48,9 @@ public:
     void begin_with(Statement statement) { begin_.push_back(std::move(statement)); }
 
     /// Adds a program's statements. Its variables come between `prefix` and `suffix`; those in `names` have the name
-    /// there, and a variable that already has it takes their place. Outputs become local.
-    void embed(const Program& part, std::map<std::string, std::string> names, const std::string& prefix = "",
+    /// there. A variable of the whole with this name takes the place of an input, an output or a setting, and of any
+    /// variable in `names`. Other outputs become local. The settings of all programs are shared.
+    void embed(const Program& part, const std::map<std::string, std::string>& names, const std::string& prefix = "",
                const std::string& suffix = "");
 
     /// K (T_lead s + 1)/(T_lag s + 1) by backward Euler; T_lag may be 0. `before`: x until the first call.

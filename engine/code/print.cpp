@@ -107,6 +107,25 @@ private:
 
 }  // namespace
 
+std::string Dialect::mark(Operation operation) const {
+    switch (operation) {
+        case Operation::add: return " + ";
+        case Operation::subtract: return " - ";
+        case Operation::multiply: return " * ";
+        case Operation::divide: return " / ";
+        case Operation::less: return " < ";
+        case Operation::greater: return " > ";
+        case Operation::greater_equal: return " >= ";
+        case Operation::not_equal: return words_.not_equal;
+        case Operation::logical_and: return words_.logical_and;
+        case Operation::logical_or: return words_.logical_or;
+        case Operation::negate: return "-";
+        case Operation::logical_not: return words_.logical_not;
+        case Operation::exponential: break;
+    }
+    return {};
+}
+
 std::string text_of(const Expr& expression, const Dialect& dialect) {
     struct Visit {
         Type type;
@@ -141,13 +160,6 @@ std::string real_literal(double value, char exponent) {
 }
 
 std::string indentation(int depth) { return std::string(static_cast<std::size_t>(4 * depth), ' '); }
-
-std::vector<Declaration> of_role(const Program& program, VariableRole role) {
-    std::vector<Declaration> out;
-    for (const Declaration& variable : program.variables)
-        if (variable.role == role) out.push_back(variable);
-    return out;
-}
 
 std::string example_setting(const Program& program) {
     const auto settings = of_role(program, VariableRole::parameter);

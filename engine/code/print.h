@@ -25,6 +25,11 @@ std::string print(const Program& program, Language language, const Provenance& p
 /// The syntax of one language. Lines come without indentation and line end.
 class Dialect {
 public:
+    /// The words that languages have in different ways, with their blanks.
+    struct Words {
+        const char *not_equal, *logical_and, *logical_or, *logical_not;
+    };
+    explicit Dialect(const Words& words) : words_(words) {}
     virtual ~Dialect() = default;
 
     virtual std::string real(double value) const = 0;
@@ -32,7 +37,7 @@ public:
     /// The name alone, or with the record that keeps it.
     virtual std::string variable(const VariableReference& place) const = 0;
     /// The operator with blanks between two operands (" + "), or before a single one ("-").
-    virtual std::string mark(Operation operation) const = 0;
+    std::string mark(Operation operation) const;
     virtual std::string exponential(const std::string& argument) const = 0;
 
     virtual std::string assign(const std::string& target, const std::string& value) const = 0;
@@ -42,6 +47,9 @@ public:
     virtual std::string close_decision() const = 0;    ///< "": the indentation ends the block
     virtual std::string close_repetition() const = 0;  ///< the same
     virtual std::string remark(const std::string& text) const = 0;
+
+private:
+    Words words_;
 };
 
 /// The expression with the tree's order of operations: parentheses where precedence or left-to-right order would change
@@ -59,8 +67,6 @@ std::vector<std::string> head_lines(const Program& program, const Provenance& pr
                                     const std::vector<std::string>& call);
 
 std::string indentation(int depth);
-
-std::vector<Declaration> of_role(const Program& program, VariableRole role);
 
 /// The program's type: its name in capitals at the beginning, "TunewrightPid".
 std::string type_name(const Program& program);

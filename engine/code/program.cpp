@@ -112,4 +112,11 @@ Expr Program::declare(Declaration declaration) {
     return variable;
 }
 
+std::vector<Declaration> of_role(const Program& program, VariableRole role) {
+    std::vector<Declaration> out;
+    for (const Declaration& variable : program.variables)
+        if (variable.role == role) out.push_back(variable);
+    return out;
+}
+
 }  // namespace tunewright::code

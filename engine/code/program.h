@@ -155,4 +155,6 @@ struct Program {
     Expr declare(Declaration declaration);
 };
 
+std::vector<Declaration> of_role(const Program& program, VariableRole role);
+
 }  // namespace tunewright::code

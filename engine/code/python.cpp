@@ -5,6 +5,8 @@ namespace {
 
 class Python : public Dialect {
 public:
+    Python() : Dialect({" != ", " and ", " or ", "not "}) {}
+
     std::string real(double value) const override { return real_literal(value, 'e'); }
     std::string boolean(bool value) const override { return value ? "True" : "False"; }
     std::string variable(const VariableReference& place) const override {
@@ -12,25 +14,6 @@ public:
         return field ? "self." + place.name : place.name;
     }
     std::string exponential(const std::string& argument) const override { return "math.exp(" + argument + ")"; }
-    std::string mark(Operation operation) const override {
-        switch (operation) {
-            case Operation::add: return " + ";
-            case Operation::subtract: return " - ";
-            case Operation::multiply: return " * ";
-            case Operation::divide: return " / ";
-            case Operation::less: return " < ";
-            case Operation::greater: return " > ";
-            case Operation::greater_equal: return " >= ";
-            case Operation::not_equal: return " != ";
-            case Operation::logical_and: return " and ";
-            case Operation::logical_or: return " or ";
-            case Operation::negate: return "-";
-            case Operation::logical_not: return "not ";
-            case Operation::exponential: break;
-        }
-        return {};
-    }
-
     std::string assign(const std::string& target, const std::string& value) const override {
         return target + " = " + value;
     }

@@ -8,29 +8,12 @@ namespace {
 
 class StructuredText : public Dialect {
 public:
+    StructuredText() : Dialect({" <> ", " AND ", " OR ", "NOT "}) {}
+
     std::string real(double value) const override { return real_literal(value, 'E'); }
     std::string boolean(bool value) const override { return value ? "TRUE" : "FALSE"; }
     std::string variable(const VariableReference& place) const override { return place.name; }
     std::string exponential(const std::string& argument) const override { return "EXP(" + argument + ")"; }
-    std::string mark(Operation operation) const override {
-        switch (operation) {
-            case Operation::add: return " + ";
-            case Operation::subtract: return " - ";
-            case Operation::multiply: return " * ";
-            case Operation::divide: return " / ";
-            case Operation::less: return " < ";
-            case Operation::greater: return " > ";
-            case Operation::greater_equal: return " >= ";
-            case Operation::not_equal: return " <> ";
-            case Operation::logical_and: return " AND ";
-            case Operation::logical_or: return " OR ";
-            case Operation::negate: return "-";
-            case Operation::logical_not: return "NOT ";
-            case Operation::exponential: break;
-        }
-        return {};
-    }
-
     std::string assign(const std::string& target, const std::string& value) const override {
         return target + " := " + value + ";";
     }

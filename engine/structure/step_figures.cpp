@@ -30,7 +30,10 @@ std::vector<double> quick_IAEs_of(const BlockDiagram& diagram, int enters_at, co
 Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target) {
     const auto response = DiagramResponse::of(diagram, {{enters_at, 1}}, {});
     if (!response) return response.error();
-    const StepResponse nodes = response->pair(y, u, target);
+    return figures_of(response->pair(y, u, target), target);
+}
+
+StepFigures figures_of(const StepResponse& nodes, double target) {
     const ErrorIntegrals integrals = error_integrals(nodes.nodes, target, nodes.error_integral_final);
     const Extremes extremes = extremes_of_y(nodes.nodes);
     StepFigures figures{.IAE = integrals.IAE, .ISE = integrals.ISE, .TV = total_variation(nodes.nodes)};

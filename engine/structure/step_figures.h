@@ -7,7 +7,8 @@
 
 namespace tunewright {
 class BlockDiagram;
-}
+struct StepResponse;
+}  // namespace tunewright
 
 namespace tunewright::structure {
 
@@ -22,6 +23,9 @@ struct StepFigures {
 
 /// `target`: what y should become. Errors: those of DiagramResponse::of().
 Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target);
+
+/// The same of a response that is known. Without a final error integral the integrals end with the nodes.
+StepFigures figures_of(const StepResponse& nodes, double target);
 
 /// The IAE alone, at a lower accuracy: 1e-4, for a search.
 double quick_IAE(const BlockDiagram& diagram, int enters_at, int y, double target);

@@ -53,13 +53,6 @@ void declare_output(Composer& whole, const std::string& suffix) {
     whole.output("u" + suffix, "the controller's output");
 }
 
-/// A controller of the signals with this suffix.
-void add_controller(Composer& whole, const Program& pid, const std::string& s) {
-    std::map<std::string, std::string> names;
-    for (const char* name : {"setpoint", "measurement", "manual", "manual_output", "u"}) names[name] = name + s;
-    whole.embed(pid, names, "", s);
-}
-
 /// The settings and the memory of a u that add_to_controller() computes.
 void declare_sum(Composer& whole, const CodeOptions& options, const std::string& s) {
     whole.setting("u_min" + s, options.u_min.value_or(-code::kNoLimit), "least u");
@@ -80,18 +73,14 @@ void add_to_controller(Composer& whole, const Program& pid, const std::string& s
     whole.add(when(inverse(whole["at_rest"]), {assign(bias, of("bias") - added)}));
     whole.add(assign(whole.state("feedback_last" + s, "output of the last call, with what is added now"),
                      of("u_before") - added));
-    std::map<std::string, std::string> names;
-    for (const auto& [own, name] : {std::pair{"setpoint", "setpoint"},
-                                    {"measurement", "measurement"},
-                                    {"manual", "manual"},
-                                    {"manual_output", "manual_left"},
-                                    {"u", "feedback"},
-                                    {"u_min", "min_left"},
-                                    {"u_max", "max_left"},
-                                    {"bias", "bias_left"},
-                                    {"u_last", "feedback_last"}})
-        names[own] = name + s;
-    whole.embed(pid, names, "", s);
+    whole.embed(pid,
+                {{"manual_output", "manual_left" + s},
+                 {"u", "feedback" + s},
+                 {"u_min", "min_left" + s},
+                 {"u_max", "max_left" + s},
+                 {"bias", "bias_left" + s},
+                 {"u_last", "feedback_last" + s}},
+                "", s);
     whole.add(code::remark("The sum, without what rounding adds at a limit."));
     whole.add_bounded(of("u"), of("feedback") + added, of("u_min"), of("u_max"));
 }
@@ -173,7 +162,6 @@ Expected<Program> cascade_program(const SampledPid& inner, const SampledPid& out
     whole.add(code::remark("The inner controller."));
     whole.embed(*C2,
                 {{"setpoint", "r2"},
-                 {"measurement", "inner_measurement"},
                  {"manual", "manual"},
                  {"manual_output", "manual_output"},
                  {"y0", "r2_bias"},
@@ -260,11 +248,7 @@ Expected<Program> level_program(const SampledPid& pid, const CodeOptions& u, dou
     const Expr error = whole.let("level_error", "r - y", r - y), inside = whole.local("inside", "its part in the gap");
     whole.add_bounded(inside, error, -width, width);
     whole.let("counted", "the measurement for the controller", r - (error - (1 - share) * inside));
-    whole.embed(*controller, {{"setpoint", "setpoint"},
-                              {"measurement", "counted"},
-                              {"manual", "manual"},
-                              {"manual_output", "manual_output"},
-                              {"u", "u"}});
+    whole.embed(*controller, {{"measurement", "counted"}});
     std::vector<std::string> notes = controller->notes;
     notes.insert(
         notes.begin(),
@@ -299,7 +283,7 @@ Expected<Program> interaction_program(const std::vector<SampledPid>& controllers
     if (elements.empty()) {
         for (const PidNote which : {PidNote::limits, PidNote::manual, PidNote::start})
             notes.push_back(note(programs[0], which));
-        for (std::size_t i = 0; i < n; ++i) add_controller(whole, programs[i], "_" + number(i));
+        for (std::size_t i = 0; i < n; ++i) whole.embed(programs[i], {}, "", "_" + number(i));
         return whole.take(std::move(notes));
     }
     for (std::size_t i = 0; i < n; ++i) declare_sum(whole, u[i], "_" + number(i));

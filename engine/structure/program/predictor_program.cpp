@@ -176,13 +176,7 @@ Expected<Program> predictor_program(const PredictorController& controller, doubl
                filtered = whole.system("filtered", F, error),
                now = stable ? whole.system("model", ahead, 0.0) : add_past(whole, m, delay, Ts) + L;
     whole.let("prediction", "y without the dead time", y_base + now + filtered);
-    whole.embed(*pid, {{"setpoint", "setpoint"},
-                       {"measurement", "prediction"},
-                       {"manual", "manual"},
-                       {"manual_output", "manual_output"},
-                       {"u", "u"},
-                       {"bias", "bias"},
-                       {"y0", "y0"}});
+    whole.embed(*pid, {{"measurement", "prediction"}});
     whole.add(code::remark("The model moves by the u that the limits have left."));
     const Expr v = whole.let("moved", "u less u_base", out - u_base),
                oldest = whole.let("oldest", "the same a call before the dead time", element(past, place));

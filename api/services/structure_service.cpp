@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/describe/body.h"
+#include "api/services/structure_records.h"
 #include "engine/structure/drawing.h"
 
 namespace tunewright::api {
@@ -240,6 +241,19 @@ Expected<InteractionAnswer> answered(const InteractionRequest& request, const Ru
     return out;
 }
 
+/// The answer, with models in the place of plants where the request has records.
+template <class Request>
+auto answered_with_records(const Request& request, const RunControl& control) -> decltype(answered(request, control)) {
+    if (request.records.empty()) return answered(request, control);
+    auto models = models_of(request, control);
+    if (!models) return models.error();
+    Request with_plants = request;
+    if (auto error = take_models(*models, with_plants)) return *error;
+    auto answer = answered(with_plants, control);
+    if (answer) answer->models = std::move(*models);
+    return answer;
+}
+
 /// JobOutline of the document.
 template <class Request>
 std::string outline_of(const Request& request, const char* structure, const StructureAnswer& answer) {
@@ -265,7 +279,7 @@ Answer call(std::string_view body, const Description<Request>& contract, const D
     const auto decoded = read_body(body, contract);
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<Request>(decoded);
-    auto result = answered(request, control);
+    auto result = answered_with_records(request, control);
     // The partial result of a search that was stopped is not kept.
     if (!result || result->partial) return refusal(to_problem(result ? stopped() : result.error()));
     result->units = request.units;
@@ -279,7 +293,7 @@ JobOutcome outcome(const Request& request, const char* structure, const Descript
                    std::string_view hash, const RunControl& control) {
     JobOutcome outcome;
     outcome.method = structure;
-    auto result = answered(request, control);
+    auto result = answered_with_records(request, control);
     if (!result) {
         outcome.status = JobOutcome::Status::cancelled;
         if (result.error().kind == ErrorKind::cancelled) return outcome;

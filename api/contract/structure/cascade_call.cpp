@@ -15,11 +15,15 @@ const Description<CascadeLoop>& cascade_loop_contract() {
         Description<L> d("CascadeLoop", "One loop of a cascade.");
         d.field("plant", &L::plant, linear_plant(),
                 "The inner plant is from the valve to the inner measurement, the outer one from there to the outer "
-                "measurement; in a parallel cascade from the valve.",
-                {.required = true})
+                "measurement; in a parallel cascade from the valve.")
+            .field("record", &L::record, maybe(object(record_contract())),
+                   "In place of the plant: a test that moves its input, which is u of the record, and its "
+                   "measurement, y.")
             .field("tune", &L::tune, object(loop_design_contract()), "The design; not together with controller.")
             .field("controller", &L::controller, linear_controller(), "A controller to judge, in place of a design.")
             .check_presence([](const Json& value, L&, Reader& reader) {
+                if (value.is_object() && value.contains("plant") && value.contains("record"))
+                    reader.fault_at("record", "record and plant are both given; a loop has one. Remove one.");
                 if (value.is_object() && value.contains("tune") && value.contains("controller"))
                     reader.fault_at("controller", "controller and tune are both given; a loop has one. Remove one.");
             });
@@ -64,7 +68,56 @@ const auto& weights_contract() {
     return description;
 }
 
+/// One record of both plants: the inner one from u to d, the outer one from d to y, or from u in a parallel cascade.
+void split_record(CascadeRequest& request) {
+    NamedRecord outer = std::move(request.records.back());
+    outer.name = "outer";
+    NamedRecord inner = outer;
+    inner.name = "inner";
+    inner.read.record.y = inner.read.record.d.front().values;
+    inner.read.record.y0 = {};
+    if (request.arrangement == structure::Arrangement::series) {
+        outer.read.record.u = outer.read.record.d.front().values;
+        outer.read.record.u0 = {};
+        outer.read.record.u_limits = {};
+    }
+    for (NamedRecord* one : {&inner, &outer}) {
+        one->read.record.d = {};
+        one->read.record.r = {};
+        one->read.record.automatic = {};
+    }
+    request.records = {std::move(inner), std::move(outer)};
+}
+
+void check_sources(CascadeRequest& request, Reader& reader) {
+    if (request.record) {
+        for (const auto& [name, loop] : {std::pair{"inner", &request.inner}, {"outer", &request.outer}})
+            if (loop->plant || loop->record)
+                reader.fault_at(name, std::string(name) + " has a plant or a record of its own, and record holds both "
+                                                          "loops. Remove one of them.");
+        const Reader::At at(reader, "record");
+        take_record(request, "", "record", std::move(*request.record), 1,
+                    "The record of a cascade needs one further column or signal, d: the measurement of the inner loop, "
+                    "such as columns {\"u\": \"FIC7.OP\", \"d\": [\"FIC7.PV\"], \"y\": \"TIC101.PV\"}.",
+                    reader);
+        if (!request.records.empty()) split_record(request);
+        return;
+    }
+    for (auto& [name, loop] : {std::pair{"inner", &request.inner}, {"outer", &request.outer}}) {
+        const Reader::At at(reader, name);
+        if (!loop->plant && !loop->record) {
+            reader.fault_at("plant", "plant is missing. Give the plant, such as \"2 e^(-s)/(4s+1)\", or a record.");
+            continue;
+        }
+        if (loop->plant) continue;
+        const Reader::At record(reader, "record");
+        take_record(request, name, std::string(name) + "/record", std::move(*loop->record), 0,
+                    "The record of one loop needs u and y alone. Leave out d.", reader);
+    }
+}
+
 void check_cascade(const Json& value, CascadeRequest& request, Reader& reader) {
+    check_sources(request, reader);
     if (request.joint && (request.inner.controller || request.outer.controller))
         reader.fault_at("search",
                         "search is joint, which designs both controllers, and one is given. Remove controller, or "
@@ -207,8 +260,11 @@ const Description<CascadeRequest>& cascade_request_contract() {
         using enum structure::Arrangement;
         Description<R> d("CascadeRequest", "Two controllers in series: design or judgement.");
         add_structure_members(d, "cascade");
-        d.field("inner", &R::inner, object(cascade_loop_contract()), "The inner loop.", {.required = true})
-            .field("outer", &R::outer, object(cascade_loop_contract()), "The outer loop.", {.required = true})
+        d.field("inner", &R::inner, object(cascade_loop_contract()), "The inner loop.")
+            .field("outer", &R::outer, object(cascade_loop_contract()), "The outer loop.")
+            .field("record", &R::record, maybe(object(record_contract())),
+                   "In place of both plants: one test that moves u, with the inner measurement as d and the outer one "
+                   "as y.")
             .field("arrangement", &R::arrangement,
                    choice<structure::Arrangement>({{"series", series}, {"parallel", parallel}}),
                    "series: the outer plant follows the inner measurement; parallel: the valve moves both.")

@@ -8,6 +8,7 @@ namespace tunewright::api {
 /// One loop of a cascade: its plant, and a design or a controller.
 struct CascadeLoop {
     std::optional<LinearPlant> plant;
+    std::optional<GivenRecord> record;  ///< in place of the plant
     structure::LoopDesign tune;
     std::optional<IdealPid> controller;
 };
@@ -19,6 +20,7 @@ struct CascadePair {
 
 struct CascadeRequest : StructureRequest {
     CascadeLoop inner, outer;
+    std::optional<GivenRecord> record;  ///< of both: u, the inner measurement as d, the outer one as y
     structure::Arrangement arrangement = structure::Arrangement::series;
     struct {
         std::optional<double> Ms_valve;

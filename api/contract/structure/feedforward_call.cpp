@@ -38,6 +38,24 @@ const auto& feedforward_wish_contract() {
     return description;
 }
 
+void check_paths(FeedforwardRequest& request, Reader& reader) {
+    if (!request.record) {
+        for (const auto& [name, plant] : {std::pair{"plant", &request.plant}, {"disturbance", &request.disturbance}})
+            if (!*plant)
+                reader.fault_at(name, std::string(name) +
+                                          " is missing. Give it, such as \"1.5 e^(-15s)/(60s+1)\", or a record in which "
+                                          "u and the disturbance move.");
+        return;
+    }
+    if (request.plant || request.disturbance)
+        return reader.fault_at("record", "record stands for plant and disturbance. Give it, or both of them.");
+    const Reader::At at(reader, "record");
+    take_record(request, "plant", "record", std::move(*request.record), 1,
+                "The record needs one further column or signal, d: the measured disturbance, such as columns {\"u\": "
+                "\"OP\", \"d\": [\"feed\"], \"y\": \"PV\"}.",
+                reader);
+}
+
 /// A controller's members, or {"tune": {...}}.
 Codec<FeedbackWish> feedback_codec() {
     const auto given = linear_controller();
@@ -139,9 +157,10 @@ const Description<FeedforwardRequest>& feedforward_request_contract() {
         using R = FeedforwardRequest;
         Description<R> d("FeedforwardRequest", "A loop with feedback, and a disturbance that is measured.");
         add_structure_members(d, "feedforward");
-        d.field("plant", &R::plant, linear_plant(), "From u to y.", {.required = true})
-            .field("disturbance", &R::disturbance, linear_plant(), "From the measured disturbance to y.",
-                   {.required = true})
+        d.field("plant", &R::plant, linear_plant(), "From u to y.")
+            .field("disturbance", &R::disturbance, linear_plant(), "From the measured disturbance to y.")
+            .field("record", &R::record, maybe(object(record_contract())),
+                   "In place of both: a record in which u and the disturbance, d, move.")
             .field("feedback", &R::feedback, feedback_codec(), "The loop's controller, or {\"tune\": {...}}.",
                    {.required = true})
             .field("feedforward", &R::feedforward, object(feedforward_wish_contract()), "Limits of the compensator.")
@@ -149,6 +168,7 @@ const Description<FeedforwardRequest>& feedforward_request_contract() {
                    "A compensator to judge, in place of designs.")
             .field("uncertainty", &R::uncertainty, number({.exclusive_minimum = 0, .exclusive_maximum = 1}),
                    "Share by which the disturbance's gain and the plant's dead time are taken to be wrong.")
+            .check([](const Json&, R& request, Reader& reader) { check_paths(request, reader); })
             .example({{"plant", "1.5 e^(-15s)/(60s+1)"},
                       {"disturbance", "1/(15s+1)"},
                       {"feedback", {{"Kp", 1.3333}, {"Ti", 60}}},

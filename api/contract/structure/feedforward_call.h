@@ -13,6 +13,7 @@ struct FeedbackWish {
 
 struct FeedforwardRequest : StructureRequest {
     std::optional<LinearPlant> plant, disturbance;
+    std::optional<GivenRecord> record;  ///< in place of both, with the disturbance as d
     FeedbackWish feedback;
     struct {
         double jump = 10;

@@ -87,7 +87,26 @@ const auto& output_weights_contract() {
     return description;
 }
 
+void check_sources(InteractionRequest& request, Reader& reader) {
+    if (request.plant.empty() == !request.given_records)
+        return reader.fault_at("plant", "Give either plant, a matrix such as [[\"2 e^(-s)/(8s+1)\", 0], [\"1/(5s+1)\", "
+                                        "\"3 e^(-2s)/(9s+1)\"]], or records, one of each output.");
+    if (!request.given_records) return;
+    const std::size_t n = request.given_records->size();
+    request.plant.assign(n, std::vector<std::optional<LinearPlant>>(n));
+    const Reader::At records(reader, "records");
+    for (std::size_t i = 0; i < n; ++i) {
+        const Reader::At at(reader, i);
+        take_record(request, "output " + std::to_string(i + 1), "records/" + std::to_string(i),
+                    std::move((*request.given_records)[i]), n - 1,
+                    "Each record needs all inputs: u the first of them, and the others as d, such as columns {\"u\": "
+                    "\"FIC1.OP\", \"d\": [\"FIC2.OP\"], \"y\": \"TIC1.PV\"}.",
+                    reader);
+    }
+}
+
 void check_interaction(const Json&, InteractionRequest& request, Reader& reader) {
+    check_sources(request, reader);
     const std::size_t n = request.plant.size();
     const auto count = [&](const char* name, std::size_t given) {
         if (given != 0 && given != n)
@@ -247,8 +266,10 @@ const Description<InteractionRequest>& interaction_request_contract() {
         Description<R> d("InteractionRequest", "Two or three loops whose outputs depend on each other's inputs.");
         add_structure_members(d, "interaction");
         d.field("plant", &R::plant, matrix,
-                "A row for each output, a column for each input; 0 or null: a path that is not there.",
-                {.required = true})
+                "A row for each output, a column for each input; 0 or null: a path that is not there.")
+            .field("records", &R::given_records, maybe(list_of(object(record_contract()), kMinLoops, kMaxLoops)),
+                   "In place of the plant: for each output a record in which all inputs move, u the first of them, d "
+                   "the others in their order, and y the output.")
             .field(
                 "pairing",
                 [codec = maybe(pairing_codec())](const Json& value, R& request, Reader& reader) {

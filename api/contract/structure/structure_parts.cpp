@@ -237,6 +237,27 @@ const Description<StructureTyping>& structure_typing_contract() {
     return description;
 }
 
+const Description<NamedModel>& named_model_contract() {
+    static const auto description = [] {
+        Description<NamedModel> d("StructureModel", "A model from a record.");
+        d.field("name", &NamedModel::name, words(), "What it is of.")
+            .field("model", &NamedModel::model, answer(model_contract()), "As POST /v1/identify answers.");
+        return d;
+    }();
+    return description;
+}
+
+void take_record(StructureRequest& request, std::string name, std::string where, GivenRecord given, std::size_t further,
+                 const char* needs, Reader& reader) {
+    const std::size_t before = reader.count();
+    const bool in_csv = given.csv.has_value();
+    ReadRecord read = resolve(std::move(given), request.units.value_or(Units{}), reader);
+    if (!reader.clean_since(before)) return;
+    if (read.record.d.size() != further)
+        return reader.fault_at(in_csv ? "columns" : "d", needs);
+    request.records.push_back({std::move(name), std::move(where), std::move(read)});
+}
+
 void write_responses(const structure::StructureDrawing& drawing, Writer& out) {
     out.begin_array();
     for (const structure::DrawnResponse& response : drawing.responses) {

@@ -9,12 +9,25 @@
 
 #include "api/contract/device/device.h"
 #include "api/contract/request.h"
+#include "api/contract/result/identified_model.h"
 #include "engine/structure/conclusions.h"
 #include "engine/structure/drawing.h"
 #include "engine/structure/loop_design.h"
 #include "engine/structure/step_figures.h"
 
 namespace tunewright::api {
+
+/// A record in place of plants; `where`: its place in the request.
+struct NamedRecord {
+    std::string name, where;
+    ReadRecord read;
+};
+
+/// What was identified from one.
+struct NamedModel {
+    std::string name;
+    IdentifiedModel model;
+};
 
 /// The members of every request about a structure, which may also be a job.
 struct StructureRequest : JobTerms {
@@ -23,6 +36,8 @@ struct StructureRequest : JobTerms {
     int points = 200;  ///< of each series of the drawing; 0: none
     std::vector<GivenDevice> implement;
     std::vector<device::DeviceModel> devices;  ///< of `implement`: one for each controller, or one for all
+
+    std::vector<NamedRecord> records;          ///< a model of each takes the place of plants
 
     std::string time_unit() const { return units.value_or(Units{}).time_or_default(); }
 };
@@ -38,6 +53,7 @@ struct StructureAnswer {
     std::optional<Units> units;
     std::string request_hash;  ///< "" for a call
     bool partial = false;      ///< stopped: the best so far
+    std::vector<NamedModel> models;  ///< of the records
     structure::StructureDrawing drawing;
     std::vector<StructureTyping> settings;
     structure::Conclusions verdict;
@@ -46,6 +62,12 @@ struct StructureAnswer {
 /// {"code", "figures"}.
 const Description<structure::Conclusion>& conclusion_contract();
 const Description<StructureTyping>& structure_typing_contract();
+const Description<NamedModel>& named_model_contract();
+
+/// Reads a record that stands for plants, at the reader's place, into the request. With `further`: it must have so many
+/// further measured inputs, d, and `needs` says what they are.
+void take_record(StructureRequest& request, std::string name, std::string where, GivenRecord given, std::size_t further,
+                 const char* needs, Reader& reader);
 
 void write_responses(const structure::StructureDrawing& drawing, Writer& out);
 Json responses_schema(SchemaBook& book);
@@ -98,6 +120,10 @@ void add_answer_members(Description<Answered>& d) {
     d.field("partial", &A::partial, unless<bool>(boolean(), [](bool partial) { return !partial; }),
             "true: the search was stopped; this is the best so far.")
         .field("verdict", &A::verdict, list_of(answer(conclusion_contract())), "Conclusions.")
+        .field("identified", &A::models,
+               unless<std::vector<NamedModel>>(list_of(answer(named_model_contract())),
+                                               [](const auto& all) { return all.empty(); }),
+               "The models of the records.")
         .field("settings", &A::settings,
                unless<std::vector<StructureTyping>>(list_of(answer(structure_typing_contract())),
                                                     [](const auto& all) { return all.empty(); }),

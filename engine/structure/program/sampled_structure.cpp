@@ -21,7 +21,7 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kMaxCalls = 60000;
+constexpr int kMaxCalls = 40000;
 constexpr double kSettled = 1e-6;  // of each signal's largest deviation
 constexpr double kWindow = 1.5;    // a response has settled if it rests from some time until this many times that time
 constexpr int kFirstCalls = 40;    // and two dead times: before that no response has settled
@@ -211,19 +211,22 @@ private:
             if (pulse_ != nullptr && pulse_->at_plant_input && pulse_->signal == j) broken_.push_back(signal);
         }
         for (Index m = 0; m < pieces; ++m) {
-            add_nodes(k, m, plants_.borders()[m]);
+            add_nodes(k, m, k * Ts_ + plants_.borders()[m]);
             plants_.advance(k, m);
-            add_nodes(k, m, plants_.borders()[m + 1]);
+            add_nodes(k, m, m + 1 < pieces ? k * Ts_ + plants_.borders()[m + 1] : (k + 1) * Ts_);
         }
     }
 
-    void add_nodes(int k, Index m, double after) {
+    void add_nodes(int k, Index m, double t) {
         for (Index i = 0; i < nodes_.size(); ++i) {
             ResponseNode node = plants_.node(i, k, m);
-            node.t = k * Ts_ + after;
+            node.t = t;
             node.u = moved(scene_.outputs[i]);
             node.error_integral += target(i) * node.t;
-            nodes_[i].push_back(node);
+            // A second node at the same time only where something jumps.
+            const ResponseNode* last = nodes_[i].empty() ? nullptr : &nodes_[i].back();
+            const bool jumps = last == nullptr || last->y_slope != node.y_slope || last->u != node.u;
+            if (jumps || last->t != node.t) nodes_[i].push_back(node);
         }
     }
 
@@ -259,8 +262,9 @@ Expected<SampledAnswer> run_sampled(const code::Program& program, const SampledS
     SampledAnswer out;
     for (const SampledPlace& place : scene.places) {
         SampledStructureRun run(program, scene, {place.name, place.inputs}, &place);
-        out.Ms[place.name] =
-            run.settles(control) ? Figure(run.peak()) : no_figure("The sampled loop is not stable, or it was stopped.");
+        out.Ms[place.name] = run.settles(control)
+                                 ? Figure(run.peak())
+                                 : no_figure("The sampled loop is not stable, or is not at rest after 40000 calls.");
     }
     for (const SampledStep& step : scene.steps) {
         SampledStructureRun run(program, scene, sized(step, sizes), nullptr);

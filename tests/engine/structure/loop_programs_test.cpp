@@ -88,14 +88,15 @@ TEST(CascadeProgram, ItIsTwoControllersWithExternalResetWrittenPlainly) {
     EXPECT_LT(held, 1900);
 }
 
-/// y2 and y1 of a cascade whose valve saturates for `long_` seconds, then a lower set point. Returns the largest |y1 -
-/// r1| after it is reached for the first time, and the largest outer integral part.
+/// A cascade whose valve saturates for long, then has a lower set point; `gain` of its inner plant: the largest |y1 -
+/// r1| after y1 has reached it, and the largest outer integral part.
 struct AfterSaturation {
     double overshoot = 0, integral = 0;
 };
-AfterSaturation after_saturation(bool external_reset) {
-    const auto program =
-        cascade_program(sampled(2, 3), sampled(2, 20), {.u_min = 0, .u_max = 10}, {.u_min = -500, .u_max = 500});
+AfterSaturation after_saturation(bool external_reset, double gain = 1) {
+    const auto program = cascade_program(sampled(2 * gain, 3), sampled(2, 20),
+                                         {.u_min = std::min(0.0, 10 * gain), .u_max = std::max(0.0, 10 * gain)},
+                                         {.u_min = -500, .u_max = 500});
     Interpreter machine(*program);
     machine["at_rest"] = 1;
     if (!external_reset) machine["reset_time"] = 1e12;
@@ -108,7 +109,7 @@ AfterSaturation after_saturation(bool external_reset) {
         machine["measurement"] = y1;
         machine["inner_measurement"] = y2;
         machine.call();
-        y2 += kTs / 4 * (machine["u"] - y2);
+        y2 += kTs / 4 * (gain * machine["u"] - y2);
         y1 += kTs / 30 * (y2 - y1);
         out.integral = std::max(out.integral, std::abs(machine["outer_integral"]));
         if (k < 2000) continue;
@@ -124,6 +125,9 @@ TEST(CascadeProgram, ExternalResetKeepsTheOuterIntegralFromWindingUp) {
     EXPECT_LT(with.integral, 30);  // y2 reaches 10, Kp e is 10
     EXPECT_GT(without.integral, 400);
     EXPECT_LT(with.overshoot, 0.2 * without.overshoot);
+    // The same with an inner loop of direct action, which saturates at its lower limit.
+    EXPECT_NEAR(after_saturation(true, -1).integral, with.integral, 1e-9);
+    EXPECT_NEAR(after_saturation(true, -1).overshoot, with.overshoot, 1e-9);
 }
 
 TEST(CascadeProgram, ChangesOfModeDoNotMoveTheValve) {

@@ -264,10 +264,13 @@ std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const Jo
 
 std::variant<std::string, Problem> request_of_result(std::string_view result, const std::string& request) {
     const auto text = request_text(request);
-    auto job = prepare_job(text ? *text : request);
+    const Json answer = Json::parse(result, nullptr, false);
+    std::string structure = structure_of(answer);
+    if (structure.empty() && answer.is_object()) structure = structure_of(answer.value("result", Json()));
+    auto job =
+        structure.empty() ? prepare_job(text ? *text : request) : prepare_structure(text ? *text : request, structure);
     if (auto* problem = std::get_if<Problem>(&job)) return std::move(*problem);
     auto& prepared = std::get<PreparedJob>(job);
-    const Json answer = Json::parse(result, nullptr, false);
     for (const char* place : {"/request_hash", "/result/request_hash"}) {
         const Json::json_pointer hash(place);
         if (!answer.is_object() || !answer.contains(hash) || answer.at(hash) == prepared.request_hash) continue;

@@ -7,31 +7,13 @@
 
 #include "api/chosen_entry.h"
 #include "api/code/code.h"
+#include "api/contract/code_question.h"
 #include "api/contract/controller.h"
 #include "api/describe/description.h"
 #include "engine/code/algorithm.h"
 #include "engine/code/print.h"
 
 namespace tunewright::api {
-
-/// Times are in the result's own unit (units.time), u and y in the result's units.
-struct CodeQuestion {
-    code::Language language = code::Language::structured_text;
-    std::optional<double> sample_time;
-    IntegralRule integral = IntegralRule::backward;
-    DerivativeRule derivative = DerivativeRule::filtered_backward;
-    std::optional<int> slope_samples;  ///< of the rule `slope`, which needs it
-    bool velocity = false;
-    std::optional<code::AntiWindup> anti_windup;
-    std::optional<double> tracking_time, u_min, u_max, rate_limit, bias, y0;
-    /// Of a structure: range of r2 and its value at the operating point of a cascade; disturbance there, and which
-    /// compensator, of a feedforward.
-    std::optional<double> r2_min, r2_max, r2_bias, d0;
-    std::optional<std::string> compensator;
-};
-
-/// Read from an object of the parameters as typed, with numbers as numbers.
-const Description<CodeQuestion>& code_contract();
 
 /// The parameters as typed, rules that they leave out from the request's `implement`, and the units of the result: all
 /// read before anything is computed.

@@ -7,8 +7,7 @@ namespace {
 
 ControllerCode file_of(const code::Program& program, code::Language language, std::string text) {
     switch (language) {
-        case code::Language::structured_text:
-            return {"text/plain", code::type_name(program) + ".st", std::move(text)};
+        case code::Language::structured_text: return {"text/plain", code::type_name(program) + ".st", std::move(text)};
         case code::Language::c: return {"text/x-c", "tunewright_" + program.name + ".h", std::move(text)};
         case code::Language::python: return {"text/x-python", "tunewright_" + program.name + ".py", std::move(text)};
     }

@@ -147,18 +147,28 @@ code::Provenance provenance_of_structure(const Json& answer, const Json& request
 
 }  // namespace
 
+std::variant<StructureProgram, Problem> structure_program(const Json& answer, const Json& request,
+                                                          const AskedCode& asked) {
+    Reader reader;
+    const auto controllers = controllers_in(answer, reader);
+    if (auto problem = reader.problem()) return *std::move(problem);
+    if (!controllers) return to_problem(controllers.error());
+    const auto sample_time = sample_time_of(asked, request, fastest(asked, *controllers), Json::object());
+    if (const auto* problem = std::get_if<Problem>(&sample_time)) return *problem;
+    const auto& chosen = std::get<SampleTime>(sample_time);
+    auto program = program_of({answer, asked, *controllers, chosen.seconds});
+    if (!program) return to_problem(program.error());
+    return StructureProgram{std::move(*program), chosen};
+}
+
 std::variant<ControllerCode, Problem> written_structure(const ChosenEntry& found, const CodeWords& words) {
     Reader reader;
     const AskedCode asked = read_asked(words, found, reader);
-    const auto controllers = controllers_in(found.result, reader);
     if (auto problem = reader.problem()) return *std::move(problem);
-    if (!controllers) return to_problem(controllers.error());
-    const auto sample_time = sample_time_of(asked, found.request, fastest(asked, *controllers), Json::object());
-    if (const auto* problem = std::get_if<Problem>(&sample_time)) return *problem;
-    const auto& chosen = std::get<SampleTime>(sample_time);
-    const auto program = program_of({found.result, asked, *controllers, chosen.seconds});
-    if (!program) return to_problem(program.error());
-    return printed(*program, asked.question.language, provenance_of_structure(found.result, found.request), chosen);
+    auto made = structure_program(found.result, found.request, asked);
+    if (auto* problem = std::get_if<Problem>(&made)) return *std::move(problem);
+    const auto& [program, sample_time] = std::get<StructureProgram>(made);
+    return printed(program, asked.question.language, provenance_of_structure(found.result, found.request), sample_time);
 }
 
 }  // namespace tunewright::api

@@ -4,10 +4,12 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "api/describe/body.h"
 #include "api/services/structure_records.h"
+#include "api/services/structure_sampled.h"
 #include "engine/structure/drawing.h"
 
 namespace tunewright::api {
@@ -241,17 +243,25 @@ Expected<InteractionAnswer> answered(const InteractionRequest& request, const Ru
     return out;
 }
 
-/// The answer, with models in the place of plants where the request has records.
-template <class Request>
-auto answered_with_records(const Request& request, const RunControl& control) -> decltype(answered(request, control)) {
-    if (request.records.empty()) return answered(request, control);
-    auto models = models_of(request, control);
-    if (!models) return models.error();
-    Request with_plants = request;
-    if (auto error = take_models(*models, with_plants)) return *error;
-    auto answer = answered(with_plants, control);
-    if (answer) answer->models = std::move(*models);
-    return answer;
+/// The whole answer: with models in the place of plants where the request has records, and with a run of the program.
+template <class Request, class Result>
+std::variant<Result, Problem> whole_answer(const Request& given, const Description<Result>& contract,
+                                           const RunControl& control) {
+    auto models = models_of(given, control);
+    if (!models) return to_problem(models.error());
+    Request request = given;
+    if (auto error = take_models(*models, request)) return to_problem(*error);
+    auto result = answered(request, control);
+    if (!result) return to_problem(result.error());
+    result->models = std::move(*models);
+    result->units = request.units;
+    if (!request.sampled || result->partial) return std::move(*result);
+    Writer text;
+    contract.write(*result, text);
+    auto view = run_program(request, Json::parse(text.view()), sampled_plants(request, *result), control);
+    if (auto* problem = std::get_if<Problem>(&view)) return std::move(*problem);
+    result->sampled = std::move(std::get<SampledView>(view));
+    return std::move(*result);
 }
 
 /// JobOutline of the document.
@@ -279,12 +289,13 @@ Answer call(std::string_view body, const Description<Request>& contract, const D
     const auto decoded = read_body(body, contract);
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<Request>(decoded);
-    auto result = answered_with_records(request, control);
+    auto made = whole_answer(request, result_contract, control);
+    if (const auto* problem = std::get_if<Problem>(&made)) return refusal(*problem);
+    auto& result = std::get<Result>(made);
     // The partial result of a search that was stopped is not kept.
-    if (!result || result->partial) return refusal(to_problem(result ? stopped() : result.error()));
-    result->units = request.units;
+    if (result.partial) return refusal(to_problem(stopped()));
     Writer out;
-    result_contract.write(*result, out);
+    result_contract.write(result, out);
     return {200, out.take()};
 }
 
@@ -293,20 +304,18 @@ JobOutcome outcome(const Request& request, const char* structure, const Descript
                    std::string_view hash, const RunControl& control) {
     JobOutcome outcome;
     outcome.method = structure;
-    auto result = answered_with_records(request, control);
-    if (!result) {
-        outcome.status = JobOutcome::Status::cancelled;
-        if (result.error().kind == ErrorKind::cancelled) return outcome;
-        outcome.status = JobOutcome::Status::failed;
-        outcome.error_json = to_json(to_problem(result.error()));
+    auto made = whole_answer(request, result_contract, control);
+    if (const auto* problem = std::get_if<Problem>(&made)) {
+        outcome.status = control.stop.stop_requested() ? JobOutcome::Status::cancelled : JobOutcome::Status::failed;
+        if (outcome.status == JobOutcome::Status::failed) outcome.error_json = to_json(*problem);
         return outcome;
     }
-    outcome.status = result->partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
-    result->units = request.units;
-    result->request_hash = hash;
-    outcome.outline_json = outline_of(request, structure, *result);
+    auto& result = std::get<Result>(made);
+    outcome.status = result.partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
+    result.request_hash = hash;
+    outcome.outline_json = outline_of(request, structure, result);
     Writer out;
-    result_contract.write(*result, out);
+    result_contract.write(result, out);
     outcome.result_json = out.take();
     return outcome;
 }

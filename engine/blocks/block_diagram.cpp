@@ -77,7 +77,15 @@ double BlockDiagram::total_dead_time() const {
 double BlockDiagram::time_scale() const {
     double sum = 0;
     for (const Block& block : blocks_) sum += block.plant.time_scale();
-    return sum;
+    if (sum > 0) return sum;
+    // Integrators and gains alone, such as a level with a proportional controller: 1/(k s^n) has the time k^(-1/n).
+    int integrators = 0;
+    double gain = 1;
+    for (const Block& block : blocks_) {
+        integrators += block.plant.integrators();
+        gain *= std::abs(block.plant.low_frequency_gain());
+    }
+    return integrators > 0 ? std::pow(gain, -1.0 / integrators) : 0;
 }
 
 Eigen::MatrixXcd BlockDiagram::connections(std::complex<double> s) const {

@@ -42,7 +42,7 @@ public:
     int order() const;
     /// Of all blocks.
     double total_dead_time() const;
-    /// Dead times and lags of all blocks together; 0: none has any.
+    /// Dead times and lags of all blocks together; of integrators and gains alone their common time; 0: only gains.
     double time_scale() const;
 
     Eigen::MatrixXcd connections(std::complex<double> s) const;  ///< M(s)

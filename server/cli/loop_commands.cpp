@@ -116,6 +116,11 @@ void add_code_words(CLI::App& app, api::CodeWords& words) {
     code_word(app, "rate-limit", words, "Largest rate of u, per unit of time");
     code_word(app, "bias", words, "u at the operating point");
     code_word(app, "y0", words, "y at the operating point");
+    code_word(app, "r2-min", words, "Cascade: smallest set point of the inner loop");
+    code_word(app, "r2-max", words, "Cascade: its largest");
+    code_word(app, "r2-bias", words, "Cascade: it at the operating point");
+    code_word(app, "d0", words, "Feedforward: the disturbance at the operating point");
+    code_word(app, "compensator", words, "Feedforward: static, inverse, guzman_hagglund, optimum or given");
 }
 
 void add_request_command(CommandTree& tree, const std::string& name, const std::string& structure,

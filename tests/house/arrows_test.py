@@ -64,7 +64,7 @@ ROOMS = {
         "outline": {"contract", "json"},
         "shorthand": {"contract", "csv", "json"},
         "registries": {"outcome", "contract", "describe", "formula"},
-        "services": {"outcome", "contract", "describe"},
+        "services": {"outcome", "code", "contract", "describe", "json"},
         "check_service": {"outcome", "contract", "historian", "csv", "describe", "json"},
         "service": {"outcome", "outline", "services", "check_service", "shorthand", "contract", "describe", "json"},
         "batch": {"service", "contract", "historian", "csv", "describe", "json"},

@@ -93,8 +93,9 @@ void check_sources(CascadeRequest& request, Reader& reader) {
     if (request.record) {
         for (const auto& [name, loop] : {std::pair{"inner", &request.inner}, {"outer", &request.outer}})
             if (loop->plant || loop->record)
-                reader.fault_at(name, std::string(name) + " has a plant or a record of its own, and record holds both "
-                                                          "loops. Remove one of them.");
+                reader.fault_at(name, std::string(name) +
+                                          " has a plant or a record of its own, and record holds both "
+                                          "loops. Remove one of them.");
         const Reader::At at(reader, "record");
         take_record(request, "", "record", std::move(*request.record), 1,
                     "The record of a cascade needs one further column or signal, d: the measurement of the inner loop, "

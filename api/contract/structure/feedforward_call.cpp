@@ -42,9 +42,10 @@ void check_paths(FeedforwardRequest& request, Reader& reader) {
     if (!request.record) {
         for (const auto& [name, plant] : {std::pair{"plant", &request.plant}, {"disturbance", &request.disturbance}})
             if (!*plant)
-                reader.fault_at(name, std::string(name) +
-                                          " is missing. Give it, such as \"1.5 e^(-15s)/(60s+1)\", or a record in which "
-                                          "u and the disturbance move.");
+                reader.fault_at(name,
+                                std::string(name) +
+                                    " is missing. Give it, such as \"1.5 e^(-15s)/(60s+1)\", or a record in which "
+                                    "u and the disturbance move.");
         return;
     }
     if (request.plant || request.disturbance)

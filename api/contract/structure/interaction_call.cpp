@@ -89,8 +89,9 @@ const auto& output_weights_contract() {
 
 void check_sources(InteractionRequest& request, Reader& reader) {
     if (request.plant.empty() == !request.given_records)
-        return reader.fault_at("plant", "Give either plant, a matrix such as [[\"2 e^(-s)/(8s+1)\", 0], [\"1/(5s+1)\", "
-                                        "\"3 e^(-2s)/(9s+1)\"]], or records, one of each output.");
+        return reader.fault_at("plant",
+                               "Give either plant, a matrix such as [[\"2 e^(-s)/(8s+1)\", 0], [\"1/(5s+1)\", "
+                               "\"3 e^(-2s)/(9s+1)\"]], or records, one of each output.");
     if (!request.given_records) return;
     const std::size_t n = request.given_records->size();
     request.plant.assign(n, std::vector<std::optional<LinearPlant>>(n));

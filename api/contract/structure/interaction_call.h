@@ -14,7 +14,7 @@ struct InteractionControllers {
 struct InteractionRequest : StructureRequest {
     structure::PlantMatrix plant;
     std::optional<std::vector<GivenRecord>> given_records;  ///< in place of the plant: one of each output
-    std::optional<std::vector<int>> pairing;  ///< of each output the input, from 1
+    std::optional<std::vector<int>> pairing;                ///< of each output the input, from 1
     InteractionControllers controllers;
     struct {
         double mu = 1.8;

@@ -1,5 +1,6 @@
 #include "api/contract/structure/structure_parts.h"
 
+#include <algorithm>
 #include <variant>
 
 #include "api/contract/controller.h"
@@ -135,7 +136,7 @@ Json figures_schema(std::initializer_list<const char*> names) {
     return {{"type", "object"}, {"properties", properties}, {"required", required}};
 }
 
-void write_figures(Writer& out, std::initializer_list<std::pair<const char*, Figure>> figures) {
+void write_figures(Writer& out, const std::vector<std::pair<std::string, Figure>>& figures) {
     out.begin_object();
     bool unknown = false;
     for (const auto& [name, value] : figures) {
@@ -247,14 +248,105 @@ const Description<NamedModel>& named_model_contract() {
     return description;
 }
 
+namespace {
+
+Json series_schema() { return {{"type", "array"}, {"items", {{"type", "number"}}}}; }
+
+Json list_schema(const Json& properties) {
+    Json required = Json::array();
+    for (const auto& [name, schema] : properties.items()) required.push_back(name);
+    return {{"type", "array"}, {"items", {{"type", "object"}, {"properties", properties}, {"required", required}}}};
+}
+
+}  // namespace
+
+namespace {
+
+/// Every n-th call, so that at most `points` are left.
+std::vector<double> thinned(const std::vector<double>& all, int points) {
+    std::vector<double> out;
+    if (points == 0) return out;
+    const std::size_t stride = (all.size() + std::size_t(points) - 1) / std::size_t(points);
+    for (std::size_t i = 0; i < all.size(); i += std::max<std::size_t>(stride, 1)) out.push_back(all[i]);
+    return out;
+}
+
+void write_sampled_response(const SampledView& view, const structure::SampledResponse& response, Writer& out) {
+    out.begin_object();
+    out.key("input").text(response.name);
+    out.key("figures").begin_array();
+    const bool moves_setpoint = response.name.starts_with("setpoint");
+    for (const structure::StepFigures& f : response.figures)
+        step_view_contract().write({f.IAE, f.IE, moves_setpoint ? f.overshoot : f.peak, f.TV,
+ f.settles ? "" : "The response does not settle; if the loops are stable, call them less often."}, out);
+    out.end_array();
+    out.key("largest_rate").number(response.largest_rate);
+    std::vector<double> t;
+    for (std::size_t k = 0; k < response.y.front().size(); ++k) t.push_back(double(k) * view.sample_time);
+    out.key("t").numbers(thinned(t, view.points));
+    out.key("signals").begin_array();
+    for (std::size_t i = 0; i < view.names.size(); ++i) {
+        const bool measured = i < response.y.size();
+        out.begin_object();
+        out.key("name").text(view.names[i]);
+        out.key("values").numbers(thinned(measured ? response.y[i] : response.u[i - response.y.size()], view.points));
+        out.end_object();
+    }
+    out.end_array();
+    out.end_object();
+}
+
+Json sampled_responses_schema(SchemaBook& book) {
+    const Json text{{"type", "string"}}, number{{"type", "number"}};
+    return list_schema({{"input", text},
+                        {"figures", {{"type", "array"}, {"items", step_view_contract().schema(book)}}},
+                        {"largest_rate", number},
+                        {"t", series_schema()},
+                        {"signals", list_schema({{"name", text}, {"values", series_schema()}})}});
+}
+
+}  // namespace
+
+const Description<SampledView>& sampled_view_contract() {
+    static const auto description = [] {
+        using V = SampledView;
+        Description<V> d("StructureSampledAnswer", "The loops with the program of their controllers.");
+        d.field("sample_time", &V::sample_time, only_answered(number()), "Time from one call to the next.",
+                {.unit = "time"})
+            .field(
+                "Ms", {},
+                [](const V& v, Writer& out) {
+                    write_figures(out, {v.answer.Ms.begin(), v.answer.Ms.end()});
+                },
+                [](SchemaBook&) {
+                    return Json{{"type", "object"},
+                                {"properties",
+                                 {{"why_null", {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}}}},
+                                {"additionalProperties", {{"type", {"number", "null"}}}}};
+                },
+                "Peak of the sampled loop at each place, without limits.")
+            .field(
+                "responses", {},
+                [](const V& v, Writer& out) {
+                    out.begin_array();
+                    for (const auto& response : v.answer.responses) write_sampled_response(v, response, out);
+                    out.end_array();
+                },
+                sampled_responses_schema,
+                "With the limits; figures of each measurement that has a set point; largest_rate: of u from call to "
+                "call.");
+        return d;
+    }();
+    return description;
+}
+
 void take_record(StructureRequest& request, std::string name, std::string where, GivenRecord given, std::size_t further,
                  const char* needs, Reader& reader) {
     const std::size_t before = reader.count();
     const bool in_csv = given.csv.has_value();
     ReadRecord read = resolve(std::move(given), request.units.value_or(Units{}), reader);
     if (!reader.clean_since(before)) return;
-    if (read.record.d.size() != further)
-        return reader.fault_at(in_csv ? "columns" : "d", needs);
+    if (read.record.d.size() != further) return reader.fault_at(in_csv ? "columns" : "d", needs);
     request.records.push_back({std::move(name), std::move(where), std::move(read)});
 }
 
@@ -277,18 +369,6 @@ void write_responses(const structure::StructureDrawing& drawing, Writer& out) {
     }
     out.end_array();
 }
-
-namespace {
-
-Json series_schema() { return {{"type", "array"}, {"items", {{"type", "number"}}}}; }
-
-Json list_schema(const Json& properties) {
-    Json required = Json::array();
-    for (const auto& [name, schema] : properties.items()) required.push_back(name);
-    return {{"type", "array"}, {"items", {{"type", "object"}, {"properties", properties}, {"required", required}}}};
-}
-
-}  // namespace
 
 Json responses_schema(SchemaBook&) {
     const Json text{{"type", "string"}};

@@ -7,12 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "api/contract/code_question.h"
 #include "api/contract/device/device.h"
 #include "api/contract/request.h"
 #include "api/contract/result/identified_model.h"
 #include "engine/structure/conclusions.h"
 #include "engine/structure/drawing.h"
 #include "engine/structure/loop_design.h"
+#include "engine/structure/program/sampled_structure.h"
 #include "engine/structure/step_figures.h"
 
 namespace tunewright::api {
@@ -37,7 +39,8 @@ struct StructureRequest : JobTerms {
     std::vector<GivenDevice> implement;
     std::vector<device::DeviceModel> devices;  ///< of `implement`: one for each controller, or one for all
 
-    std::vector<NamedRecord> records;          ///< a model of each takes the place of plants
+    std::optional<SampledWish> sampled;
+    std::vector<NamedRecord> records;  ///< a model of each takes the place of plants
 
     std::string time_unit() const { return units.value_or(Units{}).time_or_default(); }
 };
@@ -48,12 +51,21 @@ struct StructureTyping {
     OrReason<device::Fitted> fitted;
 };
 
+/// The program of the controllers on the plants, call by call.
+struct SampledView {
+    double sample_time = 0;
+    structure::SampledAnswer answer;
+    std::vector<std::string> names;  ///< of the measurements, then of the program's outputs
+    int points = 0;                  ///< of each series, at most
+};
+
 /// The members of every answer.
 struct StructureAnswer {
     std::optional<Units> units;
-    std::string request_hash;  ///< "" for a call
-    bool partial = false;      ///< stopped: the best so far
+    std::string request_hash;        ///< "" for a call
+    bool partial = false;            ///< stopped: the best so far
     std::vector<NamedModel> models;  ///< of the records
+    std::optional<SampledView> sampled;
     structure::StructureDrawing drawing;
     std::vector<StructureTyping> settings;
     structure::Conclusions verdict;
@@ -63,6 +75,8 @@ struct StructureAnswer {
 const Description<structure::Conclusion>& conclusion_contract();
 const Description<StructureTyping>& structure_typing_contract();
 const Description<NamedModel>& named_model_contract();
+
+const Description<SampledView>& sampled_view_contract();
 
 /// Reads a record that stands for plants, at the reader's place, into the request. With `further`: it must have so many
 /// further measured inputs, d, and `needs` says what they are.
@@ -109,7 +123,14 @@ void add_structure_members(Description<Request>& d, const char* structure) {
             [wish = devices_wish()](const Json& v, Request& r, Reader& reader) { wish.read(v, r, reader); }, {},
             devices_wish().schema,
             "The user's controller as for one loop; or a list, one for each controller in the order of the answer.")
-        .check([](const Json&, Request& r, Reader& reader) { resolve_devices(r, reader); });
+        .field("sampled", &Request::sampled, maybe(object(sampled_wish_contract())),
+               "Also run the program of the controllers call by call, with its limits and anti-windup. Signals are "
+               "deviations from the operating point, limits are not.")
+        .check([structure](const Json&, Request& r, Reader& reader) {
+            resolve_devices(r, reader);
+            const Reader::At at(reader, "sampled");
+            if (r.sampled) refuse_others(*r.sampled, structure, reader);
+        });
     add_terms(d);
 }
 
@@ -124,6 +145,8 @@ void add_answer_members(Description<Answered>& d) {
                unless<std::vector<NamedModel>>(list_of(answer(named_model_contract())),
                                                [](const auto& all) { return all.empty(); }),
                "The models of the records.")
+        .field("sampled", &A::sampled, maybe(answer(sampled_view_contract())),
+               "With sampled: the same loops with the controllers' program.")
         .field("settings", &A::settings,
                unless<std::vector<StructureTyping>>(list_of(answer(structure_typing_contract())),
                                                     [](const auto& all) { return all.empty(); }),
@@ -166,7 +189,7 @@ const Description<StepView>& step_view_contract();
 Figure known_unless(double value, const std::string& why);
 
 /// An object of figures, with the reasons of those that are not known, and its schema.
-void write_figures(Writer& out, std::initializer_list<std::pair<const char*, Figure>> figures);
+void write_figures(Writer& out, const std::vector<std::pair<std::string, Figure>>& figures);
 Json figures_schema(std::initializer_list<const char*> names);
 
 }  // namespace tunewright::api

@@ -126,7 +126,7 @@ TEST(CascadeCall, TheBaselineIsJudgedBesideTheDesign) {
 }
 
 TEST(CascadeCall, ErrorsNameThePlaceAndTheCure) {
-    expect_refusal(cascade_call, Json::object(), "/inner", "inner is missing");
+    expect_refusal(cascade_call, Json::object(), "/inner/plant", "plant is missing");
     expect_refusal(cascade_call, with(cascade(), "/inner/plant", {{"type", "fopdt"}, {"K", 0}, {"T", 1}, {"L", 1}}),
                    "/inner/plant/K", "K is 0");
     expect_refusal(cascade_call, with(cascade(), "/outer/plant", "2 e^(-3s)/(10s+"), "/outer/plant", "");
@@ -226,7 +226,7 @@ TEST(FeedforwardCall, AnExactInverseAGivenCompensatorAndADesignedFeedback) {
 }
 
 TEST(FeedforwardCall, ErrorsNameThePlaceAndTheCure) {
-    expect_refusal(feedforward_call, Json::object(), "/disturbance", "disturbance is missing");
+    expect_refusal(feedforward_call, {{"feedback", {{"Kp", 1}, {"Ti", 60}}}}, "/disturbance", "disturbance is missing");
     expect_refusal(feedforward_call, with(feedforward(), "/feedback", {{"Kp", 90}, {"Ti", 60}}), "/feedback",
                    "not stable");
     expect_refusal(feedforward_call, with(feedforward(), "/feedback/tune", Json::object()), "/feedback/tune",
@@ -269,7 +269,7 @@ TEST(InteractionCall, AGivenPairingAndPathsThatAreNotThere) {
 }
 
 TEST(InteractionCall, ErrorsNameThePlaceAndTheCure) {
-    expect_refusal(interaction_call, Json::object(), "/plant", "plant is missing");
+    expect_refusal(interaction_call, Json::object(), "/plant", "Give either plant");
     expect_refusal(interaction_call, with(interaction(), "/plant", "1/(s+1)"), "/plant", "two or three rows");
     expect_refusal(interaction_call, with(interaction(), "/plant/1", Json::array({"1/(s+1)"})), "/plant/1",
                    "write 0 for a path");

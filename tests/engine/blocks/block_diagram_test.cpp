@@ -133,6 +133,25 @@ TEST(DiagramResponse, APlantAloneRespondsAsItsClosedForm) {
         EXPECT_NEAR(node.y, node.t <= 1.5 ? 0 : 2 * (1 - std::exp(-(node.t - 1.5) / 5)), 1e-9) << node.t;
 }
 
+TEST(DiagramResponse, IntegratorsAndGainsAloneComeToRest) {
+    // 1/(A s) with proportional action: y = (1 - exp(-Kc t/A))/Kc, in any unit of time.
+    for (const double area : {1e-6, 3.0, 1e7}) {
+        BlockDiagram diagram;
+        const int y = diagram.add_signal();
+        const auto signals = add_pid(diagram, to_parallel(IdealPid{.Kp = 2}), y);
+        diagram.add(signals->output, y, *LinearPlant::make(Plant(Zpk{.K = 1 / area, .zeros = {}, .poles = {0.0}})));
+        ASSERT_TRUE(count_unstable_poles(diagram).stable());
+        const auto response = DiagramResponse::of(diagram, {{signals->output, 1}}, {});
+        ASSERT_TRUE(response);
+        ASSERT_TRUE(response->settles());
+        const double T = area / 2;
+        const auto values = response->sampled(y, {0, T, 3 * T, 1e3 * T});
+        for (const auto& [at, value] :
+             {std::pair{0.0, values[0]}, {1.0, values[1]}, {3.0, values[2]}, {1e3, values[3]}})
+            EXPECT_NEAR(value, 0.5 * (1 - std::exp(-at)), 1e-5) << area << " " << at;
+    }
+}
+
 TEST(BlockDiagram, ADerivativeWithoutFilterIsRefused) {
     BlockDiagram diagram;
     const int y = diagram.add_signal();

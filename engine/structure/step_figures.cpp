@@ -25,12 +25,9 @@ std::vector<double> quick_IAEs_of(const BlockDiagram& diagram, int enters_at, co
     return out;
 }
 
-}  // namespace
-
-Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target) {
-    const auto response = DiagramResponse::of(diagram, {{enters_at, 1}}, {});
-    if (!response) return response.error();
-    const StepResponse nodes = response->pair(y, u, target);
+StepFigures figures_of(const DiagramResponse& response, const SeenStep& seen) {
+    const double target = seen.target;
+    const StepResponse nodes = response.pair(seen.y, seen.u, target);
     const ErrorIntegrals integrals = error_integrals(nodes.nodes, target, nodes.error_integral_final);
     const Extremes extremes = extremes_of_y(nodes.nodes);
     StepFigures figures{.IAE = integrals.IAE, .ISE = integrals.ISE, .TV = total_variation(nodes.nodes)};
@@ -39,6 +36,23 @@ Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, i
     if (target != 0) figures.overshoot = std::max(0.0, (target > 0 ? extremes.max : extremes.min) / target - 1);
     figures.settles = nodes.settles;
     return figures;
+}
+
+}  // namespace
+
+Expected<std::vector<StepFigures>> step_figures(const BlockDiagram& diagram, int enters_at,
+                                                const std::vector<SeenStep>& seen) {
+    const auto response = DiagramResponse::of(diagram, {{enters_at, 1}}, {});
+    if (!response) return response.error();
+    std::vector<StepFigures> out;
+    for (const SeenStep& one : seen) out.push_back(figures_of(*response, one));
+    return out;
+}
+
+Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target) {
+    auto figures = step_figures(diagram, enters_at, {{y, u, target}});
+    if (!figures) return figures.error();
+    return figures->front();
 }
 
 double quick_IAE(const BlockDiagram& diagram, int enters_at, int y, double target) {

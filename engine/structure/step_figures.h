@@ -20,7 +20,16 @@ struct StepFigures {
     bool settles = true;
 };
 
-/// `target`: what y should become. Errors: those of DiagramResponse::of().
+/// What is measured and moved, and what y should become.
+struct SeenStep {
+    int y = 0, u = 0;
+    double target = 0;
+};
+
+/// Errors: those of DiagramResponse::of().
+Expected<std::vector<StepFigures>> step_figures(const BlockDiagram& diagram, int enters_at,
+                                                const std::vector<SeenStep>& seen);
+/// Of one output.
 Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target);
 
 /// The IAE alone, at a lower accuracy: 1e-4, for a search.

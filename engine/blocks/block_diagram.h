@@ -25,10 +25,15 @@ struct Block {
     bool cancelled = false;
 };
 
+constexpr int kMaxSignals = 20;  ///< of a diagram, so that its matrices need no memory from the heap
+using SignalMatrix =
+    Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxSignals, kMaxSignals>;
+using SignalVector = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 1, 0, kMaxSignals, 1>;
+
 class BlockDiagram {
 public:
-    /// A new signal's number, from 0.
-    int add_signal() { return signals_++; }
+    /// A new signal's number, from 0; at most kMaxSignals.
+    int add_signal();
 
     void add(int from, int to, LinearPlant plant, bool cancelled = false) {
         blocks_.push_back({from, to, std::move(plant), cancelled});
@@ -45,9 +50,9 @@ public:
     /// Dead times and lags of all blocks together; of integrators and gains alone their common time; 0: only gains.
     double time_scale() const;
 
-    Eigen::MatrixXcd connections(std::complex<double> s) const;  ///< M(s)
+    SignalMatrix connections(std::complex<double> s) const;  ///< M(s)
     /// H(s) w for one signal's w = 1: all signals.
-    Eigen::VectorXcd response(std::complex<double> s, int input) const;
+    SignalVector response(std::complex<double> s, int input) const;
     /// The characteristic function det(I - M) times the denominators of all blocks: finite everywhere, and its zeros
     /// are the poles of H, those that cancel in H included.
     std::complex<double> characteristic(std::complex<double> s) const;

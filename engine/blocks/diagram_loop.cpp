@@ -13,10 +13,11 @@ using Complex = std::complex<double>;
 constexpr double kNearZero = 1e-8;                           // of 1/time_scale: the low end of the axis
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners
 constexpr int kPointsPerDecade = 24;
-constexpr double kGridStep = 0.1;      // change of S between neighbours
-constexpr double kAtEnd = 1e-3;        // of S: the same from here to the end of the axis
-constexpr int kMostDecades = 8;        // beyond the corners
-constexpr double kTurnsResolved = 60;  // of all dead times together
+constexpr double kGridStep = 0.1;  // change of S between neighbours
+constexpr double kAtEnd = 1e-3;    // of S: the same from here to the end of the axis
+constexpr int kMostDecades = 8;    // beyond the corners
+// Of all dead times together: those of a slow outer loop turn thousands of times below the peaks of a fast inner one.
+constexpr double kTurnsResolved = 5000;
 
 struct Band {
     double low = std::numeric_limits<double>::infinity(), high = 0;

@@ -19,13 +19,19 @@ using Eigen::VectorXd;
 constexpr double kSameInstant = 1e-9;  // of the shortest step
 constexpr double kOfDeadTime = 0.25;   // first step over the shortest dead time
 constexpr double kOfRate = 0.1;        // first step times the fastest rate
-constexpr int kEchoes = 4;             // passages through dead times after which a jump no longer counts
-constexpr double kNearZero = 1e-5;     // frequency, of 1/time_scale, from which the values at 0 are extrapolated
-constexpr double kNoError = 1e-9;      // of the step: the error's final value
-constexpr int kIterations = 12;        // of a step that is longer than a dead time
-constexpr double kConverged = 1e-10;   // of the largest value
-constexpr double kOneLevel = 16;       // by which half the step lowers the error
+// Passages through dead times after which a jump no longer counts: it has become a change of a higher derivative, which
+// shorter steps follow. Several dead times have hundreds of sums.
+constexpr int kEchoes = 4, kEchoesOfMany = 3, kEchoesAtLowAccuracy = 2;
+constexpr std::size_t kMany = 4;  // delayed signals
+constexpr double kLowAccuracy = 1e-5;
+constexpr double kNearZero = 1e-5;    // frequency, of 1/time_scale, from which the values at 0 are extrapolated
+constexpr double kNoError = 1e-9;     // of the step: the error's final value
+constexpr int kIterations = 12;       // of a step that is longer than a dead time
+constexpr double kConverged = 1e-10;  // of the largest value
+constexpr double kOneLevel = 16;      // by which half the step lowers the error
 constexpr double kUnbounded = 1e6;
+constexpr int kLookAtRounding = 16;  // steps between two looks at the parts of signals
+constexpr double kRounding = 1e-8;   // of those parts: a signal that is smaller counts as that large
 
 /// The signal's value before t = 0 and after, on either side of a jump.
 struct Sides {
@@ -45,10 +51,23 @@ public:
           cursor_(system.delayed.size(), 0),
           v_(VectorXd::Zero(Index(system.delayed.size()))),
           v_slope_(v_),
-          echoes_(echoes_that_count(largest_direct(system), options.tolerance, kEchoes)),
+          end_(v_),
+          end_slope_(v_),
+          echoes_(echoes_that_count(largest_direct(system), options.tolerance, smoothing(system, options))),
           stopping_(options.settled, diagram.total_dead_time()) {
         for (const DiagramStep& step : steps) w_[step.signal] += step.size;
         input_ = system.H * w_;
+        const Index n = system.states(), inputs = v_.size(), count = system.signals();
+        to_node_ = Eigen::MatrixXd::Zero(2 * count, n + 2 * inputs);
+        to_node_.topLeftCorner(count, n) = system.M;
+        to_node_.block(0, n, count, inputs) = system.N;
+        to_node_.bottomLeftCorner(count, n) = system.M * system.F;
+        to_node_.block(count, n, count, inputs) = system.M * system.G;
+        to_node_.bottomRightCorner(count, inputs) = system.N;
+        of_inputs_.resize(2 * count);
+        of_inputs_ << system.R * w_, system.M * input_;
+        at_node_.resize(n + 2 * inputs);
+        in_step_.resize(n + 4 * inputs);
         out_.signals_ = static_cast<int>(system.signals());
         out_.inputs_.assign(w_.data(), w_.data() + w_.size());
         largest_ = VectorXd::Zero(system.signals());
@@ -76,6 +95,10 @@ public:
     }
 
 private:
+    static int smoothing(const DiagramSystem& system, const DiagramResponseOptions& options) {
+        if (options.tolerance > kLowAccuracy) return kEchoesAtLowAccuracy;
+        return system.delayed.size() > kMany ? kEchoesOfMany : kEchoes;
+    }
     static double largest_direct(const DiagramSystem& system) {
         return system.N.size() > 0 ? std::min(0.99, system.N.cwiseAbs().maxCoeff()) : 0;
     }
@@ -94,19 +117,24 @@ private:
         out_.slope_.assign(slope.data(), slope.data() + slope.size());
     }
 
-    VectorXd signals(const VectorXd& z, const VectorXd& v) const {
-        return system_.M * z + system_.N * v + system_.R * w_;
-    }
-    VectorXd slopes(const VectorXd& z, const VectorXd& v, const VectorXd& v_slope) const {
-        return system_.M * (system_.F * z + system_.G * v + input_) + system_.N * v_slope;
+    /// The values of all signals, then their slopes.
+    void compute_node(const VectorXd& z, const VectorXd& v, const VectorXd& v_slope) {
+        at_node_ << z, v, v_slope;
+        node_.noalias() = to_node_ * at_node_;
+        node_ += of_inputs_;
     }
 
     void add_node(double t) {
-        const VectorXd x = signals(z_, v_), slope = slopes(z_, v_, v_slope_);
+        compute_node(z_, v_, v_slope_);
+        const auto x = node_.head(out_.signals_);
         out_.t_.push_back(t);
-        out_.values_.insert(out_.values_.end(), x.data(), x.data() + x.size());
-        out_.values_.insert(out_.values_.end(), slope.data(), slope.data() + slope.size());
+        out_.values_.insert(out_.values_.end(), node_.data(), node_.data() + node_.size());
         largest_ = largest_.cwiseMax(x.cwiseAbs());
+        if (out_.t_.size() % kLookAtRounding == 0)
+            // Signals that are differences of larger parts, such as after an exact feedforward, are not followed into
+            // their rounding.
+            largest_ = largest_.cwiseMax(kRounding * (to_node_.topRows(x.size()).cwiseAbs() * at_node_.cwiseAbs() +
+                                                      of_inputs_.head(x.size()).cwiseAbs()));
         if (options_.horizon) return;
         double worst = 0;
         for (Index i = 0; i < x.size(); ++i)
@@ -170,6 +198,11 @@ private:
             odd = odd || std::abs(*options_.horizon - until) > slack_;
             until = *options_.horizon;
         }
+        if (until - t > steps_->h0() + slack_ && !follows_inputs(t, until)) {
+            --level_;
+            equal_steps_ = 0;
+            return;
+        }
         const bool taken = odd ? advance(steps_->step(until - t), t, until) : advance(steps_->level(level_), t, until);
         if (!taken) {
             --level_;
@@ -195,60 +228,76 @@ private:
         equal_steps_ = 0;
     }
 
+    /// True if cubics follow the delayed signals that are known: what was short when it left may arrive in a long step.
+    bool follows_inputs(double t, double until) {
+        const double h = until - t;
+        for (std::size_t k = 0; k < system_.delayed.size(); ++k) {
+            const double largest = largest_[system_.delayed[k].from];
+            if (system_.delayed[k].L < h - slack_ || !(largest > 0)) continue;
+            const Signal middle = delayed_at(k, t + 0.5 * h).before, end = delayed_at(k, until).before;
+            const double expected = hermite_midpoint(h, {v_[Index(k)], v_slope_[Index(k)]}, end);
+            if (std::abs(middle.value - expected) > kOneLevel * options_.tolerance * largest) return false;
+        }
+        return true;
+    }
+
     /// False: the iteration of a step longer than a dead time does not converge.
     bool advance(const ManyInputsStep& map, double t, double until) {
-        const std::size_t count = system_.delayed.size(), now = out_.t_.size() - 1;
+        const std::size_t now = out_.t_.size() - 1;
         const double h = until - t;
-        VectorXd end(v_), end_slope(v_slope_);
-        std::vector<std::size_t> unknown;
-        for (std::size_t k = 0; k < count; ++k) {
+        end_ = v_;
+        end_slope_ = v_slope_;
+        unknown_.clear();
+        for (std::size_t k = 0; k < system_.delayed.size(); ++k) {
             if (system_.delayed[k].L < h - slack_) {
-                unknown.push_back(k);
+                unknown_.push_back(k);
                 continue;
             }
             const Sides sides = delayed_at(k, until);
-            end[Index(k)] = sides.before.value;
-            end_slope[Index(k)] = sides.before.slope;
+            end_[Index(k)] = sides.before.value;
+            end_slope_[Index(k)] = sides.before.slope;
         }
-        VectorXd last_value =
-            Eigen::Map<const VectorXd>(&out_.values_[now * 2 * std::size_t(out_.signals_)], out_.signals_);
-        VectorXd last_slope =
-            Eigen::Map<const VectorXd>(&out_.values_[(now * 2 + 1) * std::size_t(out_.signals_)], out_.signals_);
-        const VectorXd first_value = last_value, first_slope = last_slope;
-        last_value += h * first_slope;
-        VectorXd z;
+        // The first guess continues along the slopes.
+        const Index n = out_.signals_;
+        last_ = Eigen::Map<const VectorXd>(&out_.values_[now * 2 * std::size_t(n)], 2 * n);
+        last_.head(n) += h * last_.tail(n);
         for (int i = 0; i < kIterations; ++i) {
-            for (const std::size_t k : unknown) {
+            for (const std::size_t k : unknown_) {
                 const auto& [from, L] = system_.delayed[k];
-                const Cubic c =
-                    hermite_taylor(h, {first_value[from], first_slope[from]}, {last_value[from], last_slope[from]});
-                end[Index(k)] = value_at(c, h - L);
-                end_slope[Index(k)] = slope_at(c, h - L);
+                const Cubic c = hermite_taylor(h, out_.at(now, from), {last_[from], last_[n + from]});
+                end_[Index(k)] = value_at(c, h - L);
+                end_slope_[Index(k)] = slope_at(c, h - L);
             }
-            z = map.Phi * z_ + map.constant;
-            add_inputs(map, end, end_slope, z);
-            if (unknown.empty()) break;
-            const VectorXd value = signals(z, end);
-            const double change = (value - last_value).cwiseAbs().cwiseQuotient(largest_.cwiseMax(1e-300)).maxCoeff();
-            last_value = value;
-            last_slope = slopes(z, end, end_slope);
+            step_to_end(map);
+            if (unknown_.empty()) break;
+            compute_node(next_, end_, end_slope_);
+            const double change =
+                (node_ - last_).head(n).cwiseAbs().cwiseQuotient(largest_.cwiseMax(1e-300)).maxCoeff();
+            last_ = node_;
             if (change < kConverged) break;
             if (i + 1 == kIterations) return false;
         }
-        z_ = std::move(z);
-        v_ = std::move(end);
-        v_slope_ = std::move(end_slope);
+        z_.swap(next_);
+        v_.swap(end_);
+        v_slope_.swap(end_slope_);
         add_node(until);
         return true;
     }
 
-    void add_inputs(const ManyInputsStep& map, const VectorXd& end, const VectorXd& end_slope, VectorXd& z) const {
-        if (v_.size() == 0) return;
+    /// The states at the end of a step, from cubics through both ends of the delayed signals.
+    void step_to_end(const ManyInputsStep& map) {
         const double h = map.h;
-        const VectorXd mean_slope = (end - v_) / h;
-        z += map.Gamma[0] * v_ + map.Gamma[1] * v_slope_ +
-             map.Gamma[2] * ((6 * mean_slope - 4 * v_slope_ - 2 * end_slope) / h) +
-             map.Gamma[3] * ((6 * (v_slope_ + end_slope) - 12 * mean_slope) / (h * h));
+        const Index n = z_.size(), inputs = v_.size();
+        in_step_.head(n) = z_;
+        in_step_.segment(n, inputs) = v_;
+        in_step_.segment(n + inputs, inputs) = v_slope_;
+        for (Index k = 0; k < inputs; ++k) {
+            const double mean = (end_[k] - v_[k]) / h;
+            in_step_[n + 2 * inputs + k] = (6 * mean - 4 * v_slope_[k] - 2 * end_slope_[k]) / h;
+            in_step_[n + 3 * inputs + k] = (6 * (v_slope_[k] + end_slope_[k]) - 12 * mean) / (h * h);
+        }
+        next_.noalias() = map.all * in_step_;
+        next_ += map.constant;
     }
 
     const DiagramSystem& system_;
@@ -256,6 +305,10 @@ private:
     VectorXd w_, input_, z_;
     std::vector<std::size_t> cursor_;  // of each delayed signal: a node before it
     VectorXd v_, v_slope_;             // now, after a jump
+    VectorXd end_, end_slope_, next_;  // the same and the states, at the end of a step
+    Eigen::MatrixXd to_node_;          // from states, delayed signals and their slopes to all signals and slopes
+    VectorXd of_inputs_, at_node_, in_step_, node_, last_;
+    std::vector<std::size_t> unknown_;  // delayed signals that enter and leave within a step
     Echoes echoes_;
     StoppingRule stopping_;
     DiagramResponse out_;

@@ -53,7 +53,7 @@ public:
     double rest_of_turn(double omega) const {
         const Complex s(right_of_, omega), to_a = s + a_;
         const auto n = diagram_.signals();
-        double angle = std::arg((Eigen::MatrixXcd::Identity(n, n) - diagram_.connections(s)).determinant());
+        double angle = std::arg(Eigen::MatrixXcd(SignalMatrix::Identity(n, n) - diagram_.connections(s)).determinant());
         for (const Block& block : diagram_.blocks()) {
             if (block.cancelled) continue;
             for (int i = 0; i < block.plant.integrators(); ++i) angle += std::arg(s / to_a);

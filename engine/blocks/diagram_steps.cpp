@@ -11,10 +11,18 @@ namespace {
 constexpr int kTerms = 14;            // of Taylor's series: 0.5^14/14! is below rounding
 constexpr double kLargestTerm = 0.5;  // rate times step
 
+void put_together(ManyInputsStep& step) {
+    const Eigen::Index n = step.Phi.rows(), inputs = step.Gamma[0].cols();
+    step.all.resize(n, n + Eigen::Index(step.Gamma.size()) * inputs);
+    step.all.leftCols(n) = step.Phi;
+    for (std::size_t j = 0; j < step.Gamma.size(); ++j)
+        step.all.middleCols(n + Eigen::Index(j) * inputs, inputs) = step.Gamma[j];
+}
+
 }  // namespace
 
 ManyInputsStep ManyInputsStep::doubled() const {
-    ManyInputsStep out{.h = 2 * h, .Phi = Phi * Phi, .Gamma = {}, .constant = Phi * constant + constant};
+    ManyInputsStep out{.h = 2 * h, .Phi = Phi * Phi, .Gamma = {}, .constant = Phi * constant + constant, .all = {}};
     // The second half begins with the derivatives v^(j)(h) = sum_{m >= j} v_m h^(m-j)/(m-j)!.
     for (std::size_t m = 0; m < Gamma.size(); ++m) {
         out.Gamma[m] = Phi * Gamma[m];
@@ -24,6 +32,7 @@ ManyInputsStep ManyInputsStep::doubled() const {
             factor *= h / double(back + 1);
         }
     }
+    put_together(out);
     return out;
 }
 
@@ -57,6 +66,7 @@ ManyInputsStep ManyInputsPropagator::step(double h) const {
     out.Phi = Psi[0];
     for (std::size_t j = 0; j < out.Gamma.size(); ++j) out.Gamma[j] = Psi[j + 1] * G_;
     out.constant = Psi[1] * c_;
+    put_together(out);
     for (int i = 0; i < doublings; ++i) out = out.doubled();
     out.h = h;
     return out;

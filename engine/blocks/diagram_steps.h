@@ -13,6 +13,7 @@ struct ManyInputsStep {
     Eigen::MatrixXd Phi;
     std::array<Eigen::MatrixXd, 4> Gamma;
     Eigen::VectorXd constant;
+    Eigen::MatrixXd all;  ///< [Phi Gamma_0 Gamma_1 Gamma_2 Gamma_3]: one product takes the step
 
     /// The step of twice the length.
     ManyInputsStep doubled() const;

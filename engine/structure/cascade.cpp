@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "engine/blocks/diagram_loop.h"
+#include "engine/loop/loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/structure/cascade_diagram.h"
 #include "engine/structure/limited_search.h"
@@ -16,15 +18,20 @@
 namespace tunewright::structure {
 namespace {
 
+using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kValveOverLoops = 1.15;                       // the default limit on Ms_valve
-constexpr int kPerDecade = 40;                                 // frequencies of a search
-constexpr double kBelow = 1e-2, kAbove = 1e2;                  // of the corners of both plants
-constexpr double kLeastPeak = -0.3;                            // ln below a limit: peaks that a step may reach
-constexpr double kMostMove = 4;                                // ln of a setting from its start
+constexpr double kValveOverLoops = 1.15;       // the default limit on Ms_valve
+constexpr int kPerDecade = 40;                 // frequencies of a search
+constexpr double kBelow = 1e-2, kAbove = 1e2;  // of the corners of both plants
+constexpr double kTurn = 1;                    // rad of a dead time between frequencies of a search
+constexpr double kLeastPeak = -0.3;            // ln below a limit: peaks that a step may reach
+constexpr double kMostMove = 4;                // ln of a setting from its start
+constexpr double kStartAbove = 0.2;            // ln over a limit: of a start
+// Of Ms - 1 of the inner loop, where the limits cannot be kept with all of it.
+constexpr double kOfInnerPeak[] = {1, 0.93, 0.85, 0.75, 0.6, 0.45, 0.3, 0.2};
 constexpr double kWeaker[] = {1, 0.7, 0.45, 0.25, 0.1, 0.03};  // factors of the outer gain until the limits hold
 
 Peaks peaks_at(const BlockDiagram& diagram, int signal) {
@@ -61,17 +68,24 @@ private:
     IdealPid start_;
 };
 
-/// ln of the functions over their limits: S and T of the outer loop, S at the valve, S of the inner loop.
-void excess_of(const CascadeDiagram& all, const CascadeDiagram& inner, const CascadeDesign& limits, bool sequential,
-               double omega, std::vector<double>& excess) {
-    const std::complex<double> s(0, omega);
-    const auto outer = all.diagram.response(s, all.r2)[all.r2], valve = all.diagram.response(s, all.valve)[all.valve];
-    excess = {std::log(std::abs(outer) / limits.outer.Ms), std::log(std::abs(valve) / limits.valve_limit())};
-    if (sequential)
-        excess.push_back(std::log(std::abs(1.0 - outer) / limits.outer.Mt));
-    else
-        excess.push_back(std::log(std::abs(inner.diagram.response(s, inner.valve)[inner.valve]) / limits.inner.Ms));
+struct Sensitivities {
+    Complex inner, outer, valve;
+};
+
+/// Without a block diagram: a search needs them at hundreds of frequencies for each of its steps.
+Sensitivities sensitivities(const CascadePlants& plants, const ParallelPid& inner, const ParallelPid& outer,
+                            double omega) {
+    const Complex s(0, omega), P1 = plants.outer.at(s), P2 = plants.inner.at(s);
+    // r2 enters behind the filter of y2 and without derivative action.
+    const Complex from_r2 = inner.Kp + inner.Ki / s;
+    const Complex of_inner = 1.0 + controller_response(inner, s) * P2;
+    const Complex of_both = of_inner + controller_response(outer, s) * from_r2 * P1 *
+                                           (plants.arrangement == Arrangement::series ? P2 : Complex(1));
+    return {1.0 / of_inner, of_inner / of_both, 1.0 / of_both};
 }
+
+/// The functions with limits in a search.
+enum LimitedFunction { S_outer, S_valve, T_outer, S_inner, kFunctions };
 
 /// One search over the settings of the outer, or of both controllers.
 class CascadeSearch {
@@ -82,7 +96,7 @@ public:
           design_(design),
           inner_(start.inner),
           outer_(start.outer),
-          grid_(frequencies_around({&plants.inner, &plants.outer}, kBelow, kAbove, kPerDecade)),
+          grid_(frequencies_around({&plants.inner, &plants.outer}, kBelow, kAbove, kPerDecade, kTurn)),
           control_(control) {}
 
     LimitedResult outer_only(const VectorXd& start) const { return run(start, false); }
@@ -102,51 +116,77 @@ public:
 
     /// ln of the largest excess, infinite if the loops are not stable.
     double excess(const VectorXd& x) const {
-        if (!std::isfinite(log_cost(x, false))) return kInfinity;
+        if (!stable(x)) return kInfinity;
         double most = -kInfinity;
         for (const LimitedPeak& peak : peaks(x, false)) most = std::max(most, peak.excess);
         return most;
     }
 
-private:
-    struct Diagrams {
-        CascadeDiagram all, inner;
-    };
-    Diagrams diagrams(const VectorXd& x) const {
-        const CascadeControllers both = controllers(x);
-        return {std::move(*cascade_diagram(plants_, both.inner, &both.outer)),
-                std::move(*cascade_diagram(plants_, both.inner, nullptr))};
-    }
-
     double log_cost(const VectorXd& x, bool joint) const {
-        const CascadeDiagram all = std::move(diagrams(x).all);
-        if (!count_unstable_poles(all.diagram).stable()) return kInfinity;
+        const CascadeDiagram all = diagram(x);
         const double outer = quick_IAE(all.diagram, all.outer_input, all.y1, 0);
         if (!joint) return std::log(outer);
         return std::log(design_.weight_outer * outer +
                         design_.weight_inner * quick_IAE(all.diagram, all.valve, all.y1, 0));
     }
 
+private:
+    CascadeDiagram diagram(const VectorXd& x) const {
+        const CascadeControllers both = controllers(x);
+        return std::move(*cascade_diagram(plants_, both.inner, &both.outer));
+    }
+
+    bool stable(const VectorXd& x) const { return count_unstable_poles(diagram(x).diagram).stable(); }
+
+    /// ln of each function over its limit; -infinity for one without a limit in this search.
+    std::vector<double> over_limits(const Sensitivities& at, bool joint) const {
+        std::vector<double> excess(kFunctions, -kInfinity);
+        excess[S_outer] = std::log(std::abs(at.outer) / design_.outer.Ms);
+        excess[S_valve] = std::log(std::abs(at.valve) / design_.valve_limit());
+        if (joint)
+            excess[S_inner] = std::log(std::abs(at.inner) / design_.inner.Ms);
+        else
+            excess[T_outer] = std::log(std::abs(1.0 - at.outer) / design_.outer.Mt);
+        return excess;
+    }
+
     std::vector<LimitedPeak> peaks(const VectorXd& x, bool joint) const {
-        const Diagrams both = diagrams(x);
+        const CascadeControllers both = controllers(x);
+        const ParallelPid inner = to_parallel(both.inner), outer = to_parallel(both.outer);
         return local_peaks(
             grid_,
             [&](double omega, std::vector<double>& excess) {
-                excess_of(both.all, both.inner, design_, !joint, omega, excess);
+                excess = over_limits(sensitivities(plants_, inner, outer, omega), joint);
             },
             kLeastPeak);
     }
 
+    std::vector<double> resolved_excess(const VectorXd& x, bool joint) const {
+        const CascadeControllers both = controllers(x);
+        const CascadeDiagram all = diagram(x), inner = std::move(*cascade_diagram(plants_, both.inner, nullptr));
+        const Peaks of_outer = peaks_at(all.diagram, all.r2), of_valve = peaks_at(all.diagram, all.valve);
+        std::vector<double> excess(kFunctions, -kInfinity);
+        excess[S_outer] = std::log(of_outer.S.value / design_.outer.Ms);
+        excess[S_valve] = std::log(of_valve.S.value / design_.valve_limit());
+        if (joint)
+            excess[S_inner] = std::log(peaks_at(inner.diagram, inner.valve).S.value / design_.inner.Ms);
+        else
+            excess[T_outer] = std::log(of_outer.T.value / design_.outer.Mt);
+        return excess;
+    }
+
     LimitedResult run(const VectorXd& start, bool joint) const {
         LimitedProblem problem;
+        problem.functions = kFunctions;
+        problem.stable = [&](const VectorXd& x) { return stable(x); };
         problem.log_cost = [&](const VectorXd& x) { return log_cost(x, joint); };
         problem.peaks = [&](const VectorXd& x) { return peaks(x, joint); };
         problem.excess_at = [&](const VectorXd& x, int function, double omega) {
-            const Diagrams both = diagrams(x);
-            std::vector<double> excess;
-            excess_of(both.all, both.inner, design_, !joint, omega, excess);
-            return excess[std::size_t(function)];
+            const CascadeControllers both = controllers(x);
+            return over_limits(sensitivities(plants_, to_parallel(both.inner), to_parallel(both.outer), omega),
+                               joint)[std::size_t(function)];
         };
+        problem.resolved_excess = [&](const VectorXd& x) { return resolved_excess(x, joint); };
         problem.low = start.array() - kMostMove;
         problem.high = start.array() + kMostMove;
         return search_within_limits(problem, start, {.stop = control_.stop});
@@ -174,19 +214,6 @@ Expected<LinearPlant> rough_outer_plant(const CascadePlants& plants, const Ideal
     return LinearPlant::make(Plant(plant));
 }
 
-CascadeControllers sequential(const CascadePlants& plants, const CascadeDesign& design, CascadeControllers start,
-                              const RunControl& control, LimitedResult& best) {
-    for (const double weaker : kWeaker) {
-        IdealPid outer = start.outer;
-        outer.Kp *= weaker;
-        const CascadeSearch search(plants, design, {start.inner, outer}, control);
-        if (!(search.excess(search.start(false)) < 0.2)) continue;
-        best = search.outer_only(search.start(false));
-        return search.controllers(best.x);
-    }
-    return start;
-}
-
 /// The place of a loop's error in the request.
 Error below(const char* loop, Error error) {
     error.where = loop + (error.where.empty() ? std::string() : "/" + error.where);
@@ -198,6 +225,55 @@ Error unstable_inner() {
         ErrorKind::invalid_argument, "inner/controller",
         "The inner loop is not stable with this controller, so no outer controller can be designed. Lower its gain, "
         "or leave it out: it is then designed too."};
+}
+
+struct FoundCascade {
+    CascadeControllers controllers;
+    LimitedResult found;  ///< of the outer controller's search
+
+    bool holds() const { return found.excess <= limits::kMaxRelativeExcessFound; }
+};
+
+/// The outer controller for an inner one.
+Expected<FoundCascade> with_outer(const CascadePlants& plants, const CascadeDesign& design, const IdealPid& inner,
+                                  const RunControl& control) {
+    const auto closed = cascade_diagram(plants, inner, nullptr);
+    if (!closed) return closed.error();
+    if (!count_unstable_poles(closed->diagram).stable()) return unstable_inner();
+    const auto rough = rough_outer_plant(plants, inner);
+    if (!rough) return below("outer", rough.error());
+    const auto start = robust_settings(*rough, design.outer, control);
+    if (!start) return below("outer", start.error());
+    for (const double weaker : kWeaker) {
+        IdealPid outer = *start;
+        outer.Kp *= weaker;
+        const CascadeSearch search(plants, design, {inner, outer}, control);
+        if (!(search.excess(search.start(false)) < kStartAbove)) continue;
+        const LimitedResult found = search.outer_only(search.start(false));
+        return FoundCascade{search.controllers(found.x), found};
+    }
+    return FoundCascade{{inner, *start}, {}};
+}
+
+/// The inner loop, then the outer one. Where no outer controller keeps the limits the inner loop is designed for lower
+/// and lower peaks, as long as the cost falls: with a weak outer controller the valve's peak is that of the inner loop.
+Expected<FoundCascade> one_after_the_other(const CascadePlants& plants, const CascadeDesign& design,
+                                           const RunControl& control) {
+    if (design.given_inner) return with_outer(plants, design, *design.given_inner, control);
+    LoopDesign wanted = design.inner;
+    const double highest = std::min(design.inner.Ms, design.valve_limit());
+    Expected<FoundCascade> best = FoundCascade{};
+    for (const double share : kOfInnerPeak) {
+        if (share < 1) wanted.Ms = 1 + share * (highest - 1);
+        const auto inner = robust_settings(plants.inner, wanted, control);
+        if (!inner) return best->holds() ? best : below("inner", inner.error());
+        auto next = with_outer(plants, design, *inner, control);
+        if (!next) return best->holds() ? best : next;
+        if (best->holds() && !(next->holds() && next->found.log_cost < best->found.log_cost)) return best;
+        best = std::move(next);
+        if (best->found.stopped || (share == 1 && best->holds())) return best;
+    }
+    return best;
 }
 
 /// Figures of y1 after unit steps of both loads and the set point.
@@ -245,29 +321,25 @@ Expected<CascadeFigures> judge_cascade(const CascadePlants& plants, const Cascad
 
 Expected<CascadeResult> design_cascade(const CascadePlants& plants, const CascadeDesign& design,
                                        const RunControl& control) {
-    auto inner = design.given_inner ? Expected<IdealPid>(*design.given_inner)
-                                    : robust_settings(plants.inner, design.inner, control);
-    if (!inner) return below("inner", inner.error());
-    const auto closed = cascade_diagram(plants, *inner, nullptr);
-    if (!closed) return closed.error();
-    if (!count_unstable_poles(closed->diagram).stable()) return unstable_inner();
-    const auto rough = rough_outer_plant(plants, *inner);
-    if (!rough) return below("outer", rough.error());
-    auto outer = robust_settings(*rough, design.outer, control);
-    if (!outer) return below("outer", outer.error());
-    CascadeResult result;
-    LimitedResult found;
-    result.controllers = sequential(plants, design, {*inner, *outer}, control, found);
-    if (!std::isfinite(found.log_cost) && control.stop.stop_requested())
+    auto pair = one_after_the_other(plants, design, control);
+    if (!pair) return pair.error();
+    LimitedResult found = pair->found;
+    if (!pair->holds() && control.stop.stop_requested())
         return Error{ErrorKind::cancelled, "", "The search was stopped before it found settings."};
-    if (!std::isfinite(found.log_cost))
+    if (!pair->holds())
         return Error{
             ErrorKind::no_feasible_controller, "limits",
-            "No outer controller keeps the limits with this inner one; allow a larger Ms, or a slower inner loop."};
+            design.given_inner
+                ? "No outer controller keeps the limits with this inner one; allow a larger Ms, or give an "
+                  "inner controller of lower gain."
+                : "No outer controller keeps the limits, not even with a weaker inner one; allow a larger Ms."};
+    CascadeResult result;
+    result.controllers = pair->controllers;
     if (design.joint && !found.stopped) {
         const CascadeSearch search(plants, design, result.controllers, control);
-        const LimitedResult both = search.joint(search.start(true));
-        if (std::isfinite(both.log_cost) && both.excess <= limits::kMaxRelativeExcessFound) {
+        const VectorXd start = search.start(true);
+        const LimitedResult both = search.joint(start);
+        if (both.excess <= limits::kMaxRelativeExcessFound && both.log_cost < search.log_cost(start, true)) {
             found = both;
             result.controllers = search.controllers(both.x);
         }

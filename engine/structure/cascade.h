@@ -67,9 +67,9 @@ struct CascadeResult {
 };
 
 /// Sequential: the inner loop by the method robust on P2; the outer one for the least IAE after d1 on the exact inner
-/// loop, within the limits on Ms_outer, Mt_outer and Ms_valve. Joint: from there the least weighted sum of the IAE
-/// after d1 and d2 over all settings, within the limits on the three Ms. Errors: those of the method robust;
-/// no_feasible_controller.
+/// loop, within the limits on Ms_outer, Mt_outer and Ms_valve. Where none keeps them the inner loop is weakened. Joint:
+/// from there the least weighted sum of the IAE after d1 and d2 over all settings, within the limits on the three Ms.
+/// Errors: those of the method robust; no_feasible_controller.
 Expected<CascadeResult> design_cascade(const CascadePlants& plants, const CascadeDesign& design,
                                        const RunControl& control);
 

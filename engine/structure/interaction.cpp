@@ -34,7 +34,6 @@ using Response = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>
 using Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kPerDecade = 30, kPerDecadeJudged = 200;        // frequencies of a search, of the answer
 constexpr double kBelow = 1e-3, kAbove = 1e2;                 // of the corners
 constexpr double kLeastPeak = -0.3;                           // ln below a limit
 constexpr double kMostMove = 5;                               // ln of a setting from its start
@@ -155,20 +154,26 @@ std::vector<ParallelPid> parallel(const std::vector<IdealPid>& controllers) {
     return out;
 }
 
-std::vector<double> grid_of(const PlantMatrix& plants, int per_decade) {
+struct Fineness {
+    int per_decade;
+    double turn;  // rad of the largest dead time between neighbours
+};
+constexpr Fineness kSearched{30, 0.7}, kJudged{200, 0.2};
+
+std::vector<double> grid_of(const PlantMatrix& plants, const Fineness& fineness) {
     std::vector<const LinearPlant*> paths;
     for (const auto& row : plants)
         for (const auto& plant : row)
             if (plant) paths.push_back(&*plant);
-    return frequencies_around(paths, kBelow, kAbove, per_decade);
+    return frequencies_around(paths, kBelow, kAbove, fineness.per_decade, fineness.turn);
 }
 
 Peak mu_peak(const PlantResponses& plants, const std::vector<IdealPid>& controllers) {
     const auto gains = parallel(controllers);
     const auto peaks = local_peaks(
         plants.grid(),
-        [&](double omega, std::vector<double>& excess) {
-            excess = {std::log(structured_value(sensitivity(plants, gains, omega)))};
+        [&, value = StructuredValues()](double omega, std::vector<double>& excess) mutable {
+            excess = {std::log(value(sensitivity(plants, gains, omega)))};
         },
         -1);
     Peak best{1, kInfinity};
@@ -237,22 +242,31 @@ public:
     InteractionSearch(const PlantMatrix& plants, const InteractionDesign& design, const std::vector<IdealPid>& start,
                       const RunControl& control)
         : plants_(plants),
-          responses_(plants, grid_of(plants, kPerDecade)),
+          responses_(plants, grid_of(plants, kSearched)),
+          fine_(plants, grid_of(plants, kJudged)),
           design_(design),
           settings_(start),
           control_(control) {}
 
     LimitedResult run() const {
         LimitedProblem problem;
+        problem.stable = [&](const VectorXd& x) { return all_subsets_stable(settings_.at(x)); };
         problem.log_cost = [&](const VectorXd& x) { return log_cost(settings_.at(x)); };
         problem.peaks = [&](const VectorXd& x) {
             const auto gains = parallel(settings_.at(x));
             return local_peaks(
                 responses_.grid(),
-                [&](double omega, std::vector<double>& excess) { excess = {excess_at(gains, omega)}; }, kLeastPeak);
+                [&, value = StructuredValues(design_.mu * std::exp(kLeastPeak))](double omega,
+                                                                                 std::vector<double>& excess) mutable {
+                    excess = {std::log(value(sensitivity(responses_, gains, omega)) / design_.mu)};
+                },
+                kLeastPeak);
         };
         problem.excess_at = [&](const VectorXd& x, int, double omega) {
             return excess_at(parallel(settings_.at(x)), omega);
+        };
+        problem.resolved_excess = [&](const VectorXd& x) {
+            return std::vector{std::log(mu_peak(fine_, settings_.at(x)).value / design_.mu)};
         };
         const VectorXd start = settings_.of_start();
         problem.low = start.array() - kMostMove;
@@ -267,9 +281,13 @@ private:
         return std::log(structured_value(sensitivity(responses_, gains, omega)) / design_.mu);
     }
 
-    double log_cost(const std::vector<IdealPid>& controllers) const {
+    bool all_subsets_stable(const std::vector<IdealPid>& controllers) const {
         for (unsigned closed = all_loops(plants_); closed > 0; --closed)
-            if (!stable_with(plants_, controllers, closed)) return kInfinity;
+            if (!stable_with(plants_, controllers, closed)) return false;
+        return true;
+    }
+
+    double log_cost(const std::vector<IdealPid>& controllers) const {
         const auto diagram = diagram_of(plants_, controllers, all_loops(plants_));
         double sum = 0;
         for (const int load : diagram->u) sum += weighted_IAE(diagram->blocks, load, diagram->y);
@@ -284,7 +302,7 @@ private:
     }
 
     const PlantMatrix& plants_;
-    PlantResponses responses_;
+    PlantResponses responses_, fine_;
     const InteractionDesign& design_;
     Settings settings_;
     const RunControl& control_;
@@ -302,7 +320,7 @@ std::vector<IdealPid> with_kind(std::vector<IdealPid> controllers, bool derivati
 /// Weaker and weaker until mu holds; empty: never.
 std::optional<std::vector<IdealPid>> detuned(const PlantMatrix& plants, std::vector<IdealPid> controllers, double mu) {
     const auto at_full = controllers;
-    const PlantResponses responses(plants, grid_of(plants, kPerDecade));
+    const PlantResponses responses(plants, grid_of(plants, kSearched));
     for (const double weaker : kWeaker) {
         for (std::size_t i = 0; i < controllers.size(); ++i) {
             controllers[i].Kp = weaker * at_full[i].Kp;
@@ -377,18 +395,23 @@ Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const 
         const auto own = Loop::make(*plants[k][k], to_parallel(controllers[k]));
         const auto alone = stable_peaks(own);
         out.Ms_alone.push_back(alone ? alone->S.value : kInfinity);
-        for (Index j = 0; j < n; ++j) {
-            const auto m = std::size_t(j);
-            const auto load = step_figures(diagram->blocks, diagram->u[m], diagram->y[k], diagram->u[k], 0);
-            const auto moved =
-                step_figures(diagram->blocks, diagram->r[m], diagram->y[k], diagram->u[k], i == j ? 1 : 0);
-            if (!load) return load.error();
-            if (!moved) return moved.error();
-            out.IAE_load[m][k] = load->IAE;
-            out.IAE_setpoint[m][k] = moved->IAE;
+    }
+    for (std::size_t j = 0; j < plants.size(); ++j) {
+        std::vector<SeenStep> after_load, after_setpoint;
+        for (std::size_t i = 0; i < plants.size(); ++i) {
+            after_load.push_back({diagram->y[i], diagram->u[i], 0});
+            after_setpoint.push_back({diagram->y[i], diagram->u[i], i == j ? 1.0 : 0.0});
+        }
+        const auto load = step_figures(diagram->blocks, diagram->u[j], after_load),
+                   moved = step_figures(diagram->blocks, diagram->r[j], after_setpoint);
+        if (!load) return load.error();
+        if (!moved) return moved.error();
+        for (std::size_t i = 0; i < plants.size(); ++i) {
+            out.IAE_load[j][i] = (*load)[i].IAE;
+            out.IAE_setpoint[j][i] = (*moved)[i].IAE;
         }
     }
-    const PlantResponses responses(plants, grid_of(plants, kPerDecadeJudged));
+    const PlantResponses responses(plants, grid_of(plants, kJudged));
     const Peak peak = mu_peak(responses, controllers);
     out.mu = peak.value;
     out.omega_mu = peak.omega;
@@ -415,7 +438,7 @@ Expected<BltSettings> blt(const PlantMatrix& plants) {
         return out;
     };
     // The modulus falls as F grows; below the least stable F it says nothing.
-    const PlantResponses responses(plants, grid_of(plants, kPerDecade));
+    const PlantResponses responses(plants, grid_of(plants, kSearched));
     const double wanted = kDecibels * double(plants.size());
     const auto enough = [&](double F) {
         return stable_with(plants, at(F), all_loops(plants)) && log_modulus(responses, at(F)) < wanted;

@@ -24,6 +24,7 @@ constexpr double kHeld = 1e-6;     // ln: holds the limit
 constexpr int kCorrections = 4;    // steps back to the curved limits
 constexpr double kOfPeak = 1e-5;   // difference of x, for the gradient of a peak
 constexpr double kSlackSize = 60;  // bound of the elastic unknown
+constexpr int kRounds = 5;         // of searches with lower and lower limits: the second mostly suffices
 
 struct State {
     VectorXd x;
@@ -43,15 +44,17 @@ public:
     };
     static constexpr bool kElastic = true;
 
-    Search(const LimitedProblem& problem, const LimitedOptions& options)
+    /// `margins`: ln by which each function must stay below its limit.
+    Search(const LimitedProblem& problem, const LimitedOptions& options, const std::vector<double>& margins)
         : problem_(problem),
           options_(options),
+          margins_(margins),
           n_(problem.low.size()),
           H_(optimise::kSqp.first_curvature * MatrixXd::Identity(n_, n_)) {}
 
     LimitedResult run(const VectorXd& start) {
         State now = at(start);
-        now.cost = problem_.log_cost(now.x);
+        now.cost = checked_cost(now.x);
         if (std::isfinite(now.cost)) {
             differentiate(now);
             optimise::minimise(*this, now, {.radius = 0.3, .min_radius = 1e-5, .max_radius = 1},
@@ -93,7 +96,7 @@ public:
     std::optional<State> candidate(const State& now, const Step& step, double radius) const {
         State next = corrected(now.x + step.p, 2 * radius);
         if (!(next.excess < kFar)) return std::nullopt;
-        next.cost = problem_.log_cost(next.x);
+        next.cost = checked_cost(next.x);
         return next;
     }
 
@@ -129,11 +132,14 @@ public:
     }
 
 private:
+    double checked_cost(const VectorXd& x) const { return problem_.stable(x) ? problem_.log_cost(x) : kInfinity; }
+
     /// Peaks and their slopes, without the cost.
     State at(const VectorXd& x) const {
         State state;
         state.x = x;
         state.peaks = problem_.peaks(x);
+        for (LimitedPeak& peak : state.peaks) peak.excess += margins_[std::size_t(peak.function)];
         state.excess = -kInfinity;
         for (const LimitedPeak& peak : state.peaks) state.excess = std::max(state.excess, peak.excess);
         std::erase_if(state.peaks, [](const LimitedPeak& peak) { return !(peak.excess > kNear) || !(peak.omega > 0); });
@@ -170,6 +176,7 @@ private:
 
     const LimitedProblem& problem_;
     const LimitedOptions& options_;
+    const std::vector<double>& margins_;
     Index n_;
     MatrixXd H_;
 };
@@ -178,7 +185,17 @@ private:
 
 LimitedResult search_within_limits(const LimitedProblem& problem, const VectorXd& start,
                                    const LimitedOptions& options) {
-    return Search(problem, options).run(start);
+    std::vector<double> margins(std::size_t(problem.functions), 0.0);
+    LimitedResult result = Search(problem, options, margins).run(start);
+    for (int round = 1; std::isfinite(result.log_cost); ++round) {
+        const bool held = result.excess <= kHeld;
+        const std::vector<double> excess = problem.resolved_excess(result.x);
+        result.excess = *std::ranges::max_element(excess);
+        if (!held || result.excess <= kHeld || result.stopped || round == kRounds) break;
+        for (std::size_t i = 0; i < margins.size(); ++i) margins[i] += std::max(0.0, excess[i]);
+        result = Search(problem, options, margins).run(result.x);
+    }
+    return result;
 }
 
 }  // namespace tunewright::structure

@@ -1,8 +1,11 @@
 // The least cost of a few settings under limits on peaks over frequency: settings of loops that are closed together.
 //
-// Sequential quadratic programming (numerics/optimise/sqp.h) over the logarithms of the settings. The cost's gradient
-// is a difference; that of a peak is the derivative of the function at the peak's frequency, because the peak is a
-// maximum over frequency (Danskin 1967).
+// 1. Sequential quadratic programming (numerics/optimise/sqp.h) over the logarithms of the settings. The cost's
+// gradient
+//    is a difference; that of a peak is the derivative of the function at the peak's frequency, because the peak is a
+//    maximum over frequency (Danskin 1967).
+// 2. The peaks of the result are computed on a grid that resolves every turn of the dead times. If one exceeds its
+//    limit, because the search's grid missed it, 1 continues with a limit that is lower by this excess.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,20 +24,26 @@ struct LimitedPeak {
 };
 
 struct LimitedProblem {
-    /// ln of the cost at x; infinite where the loops are not stable.
+    int functions = 1;  ///< with limits
+    /// All loops that must be stable are. Not asked for small differences about a stable x: with bounded peaks these
+    /// change the loop's gain by too little (small gain theorem).
+    std::function<bool(const Eigen::VectorXd& x)> stable;
+    /// ln of the cost at a stable x.
     std::function<double(const Eigen::VectorXd& x)> log_cost;
     /// Local maxima of all functions at x, those near their limits at least; the cost is not asked for where one of
     /// them exceeds its limit by far.
     std::function<std::vector<LimitedPeak>(const Eigen::VectorXd& x)> peaks;
     /// ln of one function over its limit at one frequency.
     std::function<double(const Eigen::VectorXd& x, int function, double omega)> excess_at;
+    /// ln of the highest peak of each function over its limit, every peak resolved.
+    std::function<std::vector<double>(const Eigen::VectorXd& x)> resolved_excess;
     Eigen::VectorXd low, high;  ///< bounds of x
 };
 
 struct LimitedResult {
     Eigen::VectorXd x;
     double log_cost = std::numeric_limits<double>::infinity();
-    double excess = std::numeric_limits<double>::infinity();  ///< the largest; <= 0: all limits hold
+    double excess = std::numeric_limits<double>::infinity();  ///< the largest resolved one; <= 0: all limits hold
     bool stopped = false;
 };
 

@@ -7,6 +7,12 @@
 #include "engine/numerics/optimise/line_search.h"
 
 namespace tunewright::structure {
+namespace {
+
+constexpr double kTurned = 400;  // rad of the largest dead time: beyond it loops have no gain
+
+}  // namespace
+
 std::vector<double> logarithmic(double low, double high, int per_decade) {
     const int n = std::max(2, static_cast<int>(std::ceil(per_decade * std::log10(high / low))));
     std::vector<double> omega;
@@ -15,8 +21,8 @@ std::vector<double> logarithmic(double low, double high, int per_decade) {
 }
 
 std::vector<double> frequencies_around(const std::vector<const LinearPlant*>& plants, double below, double above,
-                                       int per_decade) {
-    double low = std::numeric_limits<double>::infinity(), high = 0;
+                                       int per_decade, double turn) {
+    double low = std::numeric_limits<double>::infinity(), high = 0, dead_time = 0;
     const auto add = [&](double omega) {
         if (!(omega > 0) || !std::isfinite(omega)) return;
         low = std::min(low, omega);
@@ -26,9 +32,16 @@ std::vector<double> frequencies_around(const std::vector<const LinearPlant*>& pl
         add(1 / plant->time_scale());
         for (const auto pole : plant->poles()) add(std::abs(pole));
         add(1 / plant->dead_time());
+        dead_time = std::max(dead_time, plant->dead_time());
     }
     if (!(high > 0)) low = high = 1;
-    return logarithmic(below * low, above * high, per_decade);
+    std::vector<double> omega;
+    for (const double next : logarithmic(below * low, above * high, per_decade)) {
+        const double before = omega.empty() ? next : omega.back(), angle = dead_time * (next - before);
+        const int parts = dead_time * next < kTurned ? std::max(1, int(std::ceil(angle / turn))) : 1;
+        for (int i = 1; i <= parts; ++i) omega.push_back(before + (next - before) * i / parts);
+    }
+    return omega;
 }
 
 std::vector<LimitedPeak> local_peaks(const std::vector<double>& omega, const ExcessAt& excess_at, double least) {

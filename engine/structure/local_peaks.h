@@ -20,8 +20,9 @@ std::vector<LimitedPeak> local_peaks(const std::vector<double>& omega, const Exc
 std::vector<double> logarithmic(double low, double high, int per_decade);
 
 /// The same from `below` times the lowest corner of some plants to `above` times the highest; dead times and the whole
-/// time of a plant have corners too. About 1 where no plant has any.
+/// time of a plant have corners too. About 1 where no plant has any. Between neighbours the largest dead time turns by
+/// at most `turn`, rad.
 std::vector<double> frequencies_around(const std::vector<const LinearPlant*>& plants, double below, double above,
-                                       int per_decade);
+                                       int per_decade, double turn);
 
 }  // namespace tunewright::structure

@@ -23,10 +23,11 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kQuickest = 0.02, kSlowest = 50;      // of L + |T|: lambda and Tf
-constexpr double kOfCrossing = 1e-15, kOfKnob = 1e-9;  // relative: where the bisection ends
-constexpr int kPerDecade = 400;                        // frequencies at which |S| = |T| is looked for
-constexpr double kLow = 1e-3, kHigh = 1e3;             // of 1/L
+constexpr double kQuickest = 0.02, kSlowest = 50;        // of L + |T|: lambda and Tf
+constexpr double kOfCrossing = 1e-15, kOfKnob = 1e-9;    // relative: where the bisection ends
+constexpr double kSlower = 1.3, kOfKnobForPlant = 1e-6;  // ratio of the knobs tried on a plant that is not the model
+constexpr int kPerDecade = 400;                          // frequencies at which |S| = |T| is looked for
+constexpr double kLow = 1e-3, kHigh = 1e3;               // of 1/L
 constexpr double kMostMs = 1.99;
 constexpr double kBesideZero = 1e-5;  // of 1/time scale: the controller's own integrator is left of it
 
@@ -171,7 +172,7 @@ std::optional<Error> refused(const PredictorModel& m, const PredictorDesign& des
 }
 
 /// The smallest knob that keeps both limits: the peak falls and the window grows with it.
-double smallest_knob(const PredictorModel& m, const PredictorDesign& design, bool& by_window) {
+double smallest_knob(const PredictorModel& m, const PredictorDesign& design) {
     const double scale = m.L + (m.integrating ? 0 : std::abs(m.T));
     const auto grid = fine_grid(m.L);
     const auto holds = [&](double knob, bool window) {
@@ -186,9 +187,30 @@ double smallest_knob(const PredictorModel& m, const PredictorDesign& design, boo
     };
     const double by_Ms = smallest(false);
     if (!design.dead_time_error) return by_Ms;
-    const double by_error = smallest(true);
-    by_window = by_error > by_Ms;
-    return std::max(by_Ms, by_error);
+    return std::max(by_Ms, smallest(true));
+}
+
+/// True if the loop with the true plant keeps the limits.
+bool keeps_limits(const LinearPlant& plant, const PredictorController& controller, const PredictorDesign& design) {
+    const auto diagram = diagram_of(&plant, controller);
+    if (!diagram || !count_unstable_poles(diagram->blocks).stable()) return false;
+    const DiagramLoop at_plant(diagram->blocks, diagram->y);
+    const double Ms = find_sensitivity_peak(at_plant, make_peak_grid(at_plant)).value;
+    if (Ms > design.Ms * (1 + limits::kMaxRelativeExcessSearched)) return false;
+    if (!design.dead_time_error) return true;
+    const Window window = window_of([&](double omega) { return at_plant.at(omega).T; }, fine_grid(controller.model.L));
+    const double wanted = *design.dead_time_error * controller.model.L * (1 - limits::kMaxRelativeExcessSearched);
+    return window.up >= wanted && window.down >= std::min(wanted, plant.dead_time());
+}
+
+/// From the knob that suits the model to the next slower one that suits the plant; empty: there is none.
+std::optional<double> knob_for_plant(const LinearPlant& plant, const PredictorModel& m, const PredictorDesign& design,
+                                     double knob) {
+    const auto keeps = [&](double one) { return keeps_limits(plant, controller_of(m, design.kind, one), design); };
+    for (double slower = knob; slower <= kSlowest * (m.L + std::abs(m.T)); slower *= kSlower)
+        if (keeps(slower))
+            return slower == knob ? knob : log_bisect({slower, slower / kSlower}, keeps, kOfKnobForPlant).inside;
+    return std::nullopt;
 }
 
 struct PidLoop {
@@ -281,11 +303,22 @@ Expected<PredictorResult> design_predictor(const PredictorModel& model, const Li
     if (auto error = refused(model, design)) return *error;
     PredictorResult out;
     const bool fixed = design.kind == PredictorKind::predictive_pi;
-    const double knob = fixed ? model.T : smallest_knob(model, design, out.limited_by_dead_time);
+    double knob = fixed ? model.T : smallest_knob(model, design);
+    if (const auto own = model_of(plant); !fixed && own != model) {
+        const auto slower = knob_for_plant(plant, model, design, knob);
+        if (!slower)
+            return Error{
+                ErrorKind::no_feasible_controller, "model",
+                "With this model no predictor keeps the limits on the plant; give a model nearer to the plant, "
+                "or allow a larger Ms."};
+        knob = *slower;
+    }
     out.controller = controller_of(model, design.kind, knob);
     auto figures = judge_predictor(plant, out.controller);
     if (!figures) return figures.error();
     out.figures = std::move(*figures);
+    if (design.dead_time_error && !fixed)
+        out.limited_by_dead_time = out.figures.Ms < design.Ms * (1 - limits::kMaxRelativeExcessShown);
     compare_with_pid(plant, design, control, out);
     return out;
 }

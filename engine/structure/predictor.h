@@ -32,6 +32,8 @@ enum class PredictorKind { smith, filtered_smith, predictive_pi };
 struct PredictorModel {
     double K = 1, T = 1, L = 1;
     bool integrating = false;
+
+    bool operator==(const PredictorModel&) const = default;
 };
 
 /// Coefficients in descending powers of s.
@@ -73,8 +75,9 @@ struct PredictorResult {
 /// The model of a plant of first order or of an integrator. Empty: the plant has another form.
 std::optional<PredictorModel> model_of(const LinearPlant& plant);
 
-/// On the plant, which the model may describe roughly. Errors: unsupported for an unstable or integrating model with a
-/// kind other than filtered_smith; invalid_argument for numbers out of range.
+/// Keeps the limits on the plant, which the model may describe roughly. Errors: no_feasible_controller if no setting
+/// does; unsupported for an unstable or integrating model with a kind other than filtered_smith; invalid_argument for
+/// numbers out of range.
 Expected<PredictorResult> design_predictor(const PredictorModel& model, const LinearPlant& plant,
                                            const PredictorDesign& design, const RunControl& control);
 

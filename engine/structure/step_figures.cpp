@@ -27,12 +27,6 @@ std::vector<double> quick_IAEs_of(const BlockDiagram& diagram, int enters_at, co
 
 }  // namespace
 
-Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target) {
-    const auto response = DiagramResponse::of(diagram, {{enters_at, 1}}, {});
-    if (!response) return response.error();
-    return figures_of(response->pair(y, u, target), target);
-}
-
 StepFigures figures_of(const StepResponse& nodes, double target) {
     const ErrorIntegrals integrals = error_integrals(nodes.nodes, target, nodes.error_integral_final);
     const Extremes extremes = extremes_of_y(nodes.nodes);
@@ -42,6 +36,21 @@ StepFigures figures_of(const StepResponse& nodes, double target) {
     if (target != 0) figures.overshoot = std::max(0.0, (target > 0 ? extremes.max : extremes.min) / target - 1);
     figures.settles = nodes.settles;
     return figures;
+}
+
+Expected<std::vector<StepFigures>> step_figures(const BlockDiagram& diagram, int enters_at,
+                                                const std::vector<SeenStep>& seen) {
+    const auto response = DiagramResponse::of(diagram, {{enters_at, 1}}, {});
+    if (!response) return response.error();
+    std::vector<StepFigures> out;
+    for (const SeenStep& one : seen) out.push_back(figures_of(response->pair(one.y, one.u, one.target), one.target));
+    return out;
+}
+
+Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target) {
+    auto figures = step_figures(diagram, enters_at, {{y, u, target}});
+    if (!figures) return figures.error();
+    return figures->front();
 }
 
 double quick_IAE(const BlockDiagram& diagram, int enters_at, int y, double target) {

@@ -21,7 +21,16 @@ struct StepFigures {
     bool settles = true;
 };
 
-/// `target`: what y should become. Errors: those of DiagramResponse::of().
+/// What is measured and moved, and what y should become.
+struct SeenStep {
+    int y = 0, u = 0;
+    double target = 0;
+};
+
+/// Errors: those of DiagramResponse::of().
+Expected<std::vector<StepFigures>> step_figures(const BlockDiagram& diagram, int enters_at,
+                                                const std::vector<SeenStep>& seen);
+/// Of one output.
 Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target);
 
 /// The same of a response that is known. Without a final error integral the integrals end with the nodes.

@@ -1,28 +1,75 @@
 #include "engine/structure/structured_peak.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <utility>
 
 namespace tunewright::structure {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXcd;
-using Matrix = Eigen::Ref<const MatrixXcd>;
+using Matrix = Eigen::Ref<const Eigen::MatrixXcd>;
+// On the stack: at most three rows.
+using SmallMatrix = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+using SmallReal = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+using ComplexVector = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 1, 0, 3, 1>;
 
 constexpr int kMostSteps = 60;
-constexpr double kConverged = 1e-11;  // of ln of the value
+constexpr double kConverged = 1e-12;  // of ln of the value: the decrease that the slope promises
+constexpr double kShortest = 1e-6;    // of a step
+constexpr double kEnough = 1e-4;      // of the promised decrease
+constexpr int kSweeps = 3;
+constexpr double kApart = 1e-5;  // relative distance of two values whose vectors are told apart by the rows
+
+struct Largest {
+    double value = 0;
+    ComplexVector vector;  // of length 1
+};
+
+/// Of a Hermitian matrix of three rows: the cubic's root by cosines (Smith 1961, Communications of the ACM 4, 168).
+double largest_eigenvalue(const SmallMatrix& B) {
+    const double mean = B.diagonal().real().sum() / 3;
+    const double off = std::norm(B(0, 1)) + std::norm(B(0, 2)) + std::norm(B(1, 2));
+    const double spread = (B.diagonal().real().array() - mean).square().sum() + 2 * off;
+    if (!(spread > 1e-30 * mean * mean)) return mean;
+    const double p = std::sqrt(spread / 6);
+    const Eigen::Matrix3cd C = (B - mean * SmallMatrix::Identity(3, 3)) / p;
+    return mean + 2 * p * std::cos(std::acos(std::clamp(0.5 * C.determinant().real(), -1.0, 1.0)) / 3);
+}
+
+/// The same with its vector, which is orthogonal to the rows of B - value; by iteration where two values are close.
+Largest largest_of(const SmallMatrix& B) {
+    if (B.rows() == 3) {
+        const double value = largest_eigenvalue(B);
+        const Eigen::Matrix3cd M = B - value * SmallMatrix::Identity(3, 3);
+        Eigen::Vector3cd best = Eigen::Vector3cd::Zero();
+        for (const auto& [i, k] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+            const Eigen::RowVector3cd a = M.row(i), b = M.row(k);
+            const Eigen::Vector3cd v(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+            if (v.squaredNorm() > best.squaredNorm()) best = v;
+        }
+        if (best.norm() > kApart * value * value) return {value, best.normalized()};
+    }
+    const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(B);
+    return {solver.eigenvalues()(B.rows() - 1), solver.eigenvectors().col(B.rows() - 1)};
+}
+
+SmallMatrix scaled(const Matrix& S, const Vector& d) {
+    const Vector scale = d.array().exp();
+    return scale.asDiagonal() * S * scale.cwiseInverse().asDiagonal();
+}
 
 /// ln of the largest singular value of D S D^-1, D = exp(diag(d)), and its gradient over d.
-double log_value(const Matrix& S, const Eigen::VectorXd& d, Eigen::VectorXd& gradient) {
-    const Eigen::VectorXd scale = d.array().exp();
-    const MatrixXcd A = scale.asDiagonal() * S * scale.cwiseInverse().asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<MatrixXcd> solver(A.adjoint() * A);
-    const Index last = A.rows() - 1;
-    const double square = std::max(solver.eigenvalues()(last), 1e-300);
-    const Eigen::VectorXcd v = solver.eigenvectors().col(last), u = A * v / std::sqrt(square);
-    gradient = u.cwiseAbs2() - v.cwiseAbs2();
+double log_value(const Matrix& S, const Vector& d, Vector& gradient) {
+    const SmallMatrix A = scaled(S, d);
+    const Largest largest = largest_of(A.adjoint() * A);
+    const double square = std::max(largest.value, 1e-300);
+    const ComplexVector u = A * largest.vector / std::sqrt(square);
+    gradient = u.cwiseAbs2() - largest.vector.cwiseAbs2();
     return 0.5 * std::log(square);
 }
 
@@ -32,32 +79,64 @@ double of_two(const Matrix& S) {
     return std::sqrt(0.5 * (f + std::sqrt(std::max(0.0, f * f - 4 * det))));
 }
 
-/// Steepest descent over ln D with steps that adapt: the function is convex there.
-double of_more(const Matrix& S) {
-    Eigen::VectorXd d = Eigen::VectorXd::Zero(S.rows()), gradient, next_gradient;
-    double value = log_value(S, d, gradient), step = 0.5;
-    for (int i = 0; i < kMostSteps && step > 1e-9; ++i) {
-        const Eigen::VectorXd next = d - step * gradient;
-        const double there = log_value(S, next, next_gradient);
-        if (there < value) {
-            const bool done = value - there < kConverged;
-            d = next;
-            value = there;
-            gradient = next_gradient;
-            step *= 1.6;
-            if (done) break;
-        } else {
-            step *= 0.4;
+/// A start: off the diagonal each row and its column get the same size (Osborne 1960, Journal of the ACM 7, 338).
+Vector balancing(const Matrix& S) {
+    Vector d = Vector::Zero(S.rows());
+    for (int sweep = 0; sweep < kSweeps; ++sweep)
+        for (Index i = 0; i < S.rows(); ++i) {
+            const SmallMatrix A = scaled(S, d);
+            const double own = std::norm(A(i, i)), row = A.row(i).squaredNorm() - own,
+                         column = A.col(i).squaredNorm() - own;
+            if (row > 0 && column > 0) d[i] += 0.25 * std::log(column / row);
         }
+    return d;
+}
+
+/// BFGS over d = ln D, whose last entry is kept: the function is convex there.
+double of_more(const Matrix& S, Vector& d) {
+    if (d.size() != S.rows()) d = balancing(S);
+    const Index n = S.rows() - 1;
+    Vector gradient, next_gradient;
+    double value = log_value(S, d, gradient);
+    SmallReal inverse = SmallReal::Identity(n, n);
+    for (int i = 0; i < kMostSteps; ++i) {
+        const Vector p = -inverse * gradient.head(n);
+        const double slope = p.dot(gradient.head(n));
+        if (!(slope < -kConverged)) break;
+        double t = 1, there = value;
+        Vector next;
+        for (; t > kShortest; t *= 0.4) {
+            next = d;
+            next.head(n) += t * p;
+            there = log_value(S, next, next_gradient);
+            if (there < value + kEnough * t * slope) break;
+        }
+        if (!(t > kShortest)) break;
+        const Vector s = t * p, y = next_gradient.head(n) - gradient.head(n);
+        if (const double sy = s.dot(y); sy > 0) {
+            const SmallReal project = SmallReal::Identity(n, n) - s * y.transpose() / sy;
+            inverse = (project * inverse * project.transpose() + s * s.transpose() / sy).eval();
+        }
+        d = next;
+        value = there;
+        gradient = next_gradient;
     }
     return std::exp(value);
 }
 
 }  // namespace
 
-double structured_value(const Matrix& S) {
+double structured_value(const Matrix& S) { return StructuredValues()(S); }
+
+double StructuredValues::operator()(const Matrix& S) {
     if (S.rows() == 1) return std::abs(S(0, 0));
-    return S.rows() == 2 ? of_two(S) : of_more(S);
+    if (S.rows() == 2) return of_two(S);
+    if (enough_below_ > 0 && log_D_.size() == 3) {
+        const SmallMatrix A = scaled(S, log_D_);
+        const double bound = std::sqrt(std::max(0.0, largest_eigenvalue(A.adjoint() * A)));
+        if (bound < enough_below_) return bound;
+    }
+    return of_more(S, log_D_);
 }
 
 }  // namespace tunewright::structure

@@ -152,6 +152,40 @@ TEST(DiagramResponse, IntegratorsAndGainsAloneComeToRest) {
     }
 }
 
+TEST(DiagramResponse, AShortDisturbanceThatArrivesAfterALongDeadTimeIsFollowed) {
+    // A bump of width 1 is over long before it arrives 100 later, when steps have become long:
+    // y = 0.4/((s + 1)(s + 2)^2 (s + 0.1)) e^(-100s), by partial fractions.
+    BlockDiagram diagram;
+    const int u = diagram.add_signal(), bump = diagram.add_signal(), y = diagram.add_signal();
+    diagram.add(u, bump, transfer({1, 0}, {0.25, 1.25, 2, 1}));
+    diagram.add(bump, y, first_order(1, 10, 100));
+    const auto response = DiagramResponse::of(diagram, {{u, 1}}, {});
+    ASSERT_TRUE(response);
+    const auto expected = [](double t) {
+        return t < 0 ? 0
+                     : -4.0 / 9 * std::exp(-t) + 0.4 / 3.249 * std::exp(-0.1 * t) +
+                           (1.16 / 3.61 + 0.4 / 1.9 * t) * std::exp(-2 * t);
+    };
+    const auto nodes = response->pair(y, u, 0).nodes;
+    EXPECT_GT(nodes.back().t, 180);
+    for (const ResponseNode& node : nodes) EXPECT_NEAR(node.y, expected(node.t - 100), 1e-6) << node.t;
+}
+
+TEST(DiagramResponse, ASignalThatIsOnlyRoundingCostsNoSteps) {
+    // Two equal paths of opposite signs: y is 0 but for rounding, which no step can follow.
+    BlockDiagram diagram;
+    const int u = diagram.add_signal(), y = diagram.add_signal();
+    diagram.add(u, y, first_order(2, 10, 1));
+    diagram.add(u, y, transfer({-2}, {10, 1}, 1));
+    diagram.add(u, y, transfer({0.3}, {60, 23, 1}, 2));
+    diagram.add(u, y, transfer({-0.1}, {20, 23.0 / 3, 1.0 / 3}, 2));
+    const auto response = DiagramResponse::of(diagram, {{u, 1}}, {});
+    ASSERT_TRUE(response);
+    const auto nodes = response->pair(y, u, 0).nodes;
+    EXPECT_LT(nodes.size(), 1000u);
+    for (const ResponseNode& node : nodes) EXPECT_NEAR(node.y, 0, 1e-12);
+}
+
 TEST(BlockDiagram, ADerivativeWithoutFilterIsRefused) {
     BlockDiagram diagram;
     const int y = diagram.add_signal();

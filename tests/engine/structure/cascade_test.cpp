@@ -142,6 +142,50 @@ TEST(CascadeDesign, LimitsHoldOnAFineGridAndJointIsNeverWorse) {
     }
 }
 
+TEST(CascadeDesign, AValveLimitBelowTheInnerPeakWeakensTheInnerLoop) {
+    RandomNumbers random(11);
+    for (int i = 0; i < 6; ++i) {
+        const double slow = random.log_uniform(1.5, 20), valve = random.log_uniform(1.3, 1.45);
+        const CascadePlants plants{first_order(-1, 1, random.log_uniform(0.1, 1)),
+                                   first_order(2, slow, slow * random.log_uniform(0.1, 1)),
+                                   i % 3 == 2 ? Arrangement::parallel : Arrangement::series};
+        CascadeDesign design{.inner = {.Ms = 1.7, .Mt = 1.7}, .outer = {.Ms = 1.6, .Mt = 1.6}, .Ms_valve = valve};
+        for (const bool joint : {false, true}) {
+            design.joint = joint;
+            const auto result = design_cascade(plants, design, {});
+            ASSERT_TRUE(result) << i << ": " << result.error().message;
+            const auto& [inner, outer] = result->controllers;
+            const auto all = cascade_diagram(plants, inner, &outer);
+            EXPECT_LE(finest_peak(all->diagram, all->valve), valve * (1 + 1e-5)) << i;
+            EXPECT_LE(finest_peak(all->diagram, all->r2), 1.6 * (1 + 1e-5)) << i;
+            EXPECT_GT(result->figures.Ms_outer, 1.1) << i << ": the outer loop is not given up";
+        }
+    }
+}
+
+TEST(CascadeDesign, WithAGivenInnerControllerALowerValveLimitIsRefused) {
+    const CascadePlants plants{first_order(1, 1, 0.3), first_order(2, 10, 4)};
+    CascadeDesign design;
+    design.given_inner = pi(2, 1.2);
+    design.Ms_valve = 1.3;
+    const auto result = design_cascade(plants, design, {});
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().kind, ErrorKind::no_feasible_controller);
+}
+
+TEST(Cascade, ThePeakAtTheValveIsThatOfTheHighestRippleOfASlowOuterLoop) {
+    // The dead time of the outer loop turns its return to the valve a hundred times below the inner loop's peak.
+    const CascadePlants plants{transfer({0.254}, {0.795, 3.437, 1}, 0.167), first_order(1.006, 94.5, 128.6),
+                               Arrangement::parallel};
+    const auto pair = design_cascade(plants, {.inner = {.Ms = 1.7, .Mt = 1.7}, .outer = {.Ms = 1.5, .Mt = 1.5}}, {});
+    ASSERT_TRUE(pair) << pair.error().message;
+    const auto all = cascade_diagram(plants, pair->controllers.inner, &pair->controllers.outer);
+    double most = 0;
+    for (double omega = 1; omega < 40; omega += 0.0007)
+        most = std::max(most, std::abs(all->diagram.response({0, omega}, all->valve)[all->valve]));
+    EXPECT_NEAR(pair->figures.Ms_valve, most, 1e-5 * most);
+}
+
 TEST(CascadeDesign, AGivenInnerControllerIsKeptAndAnUnstableOneRefused) {
     const CascadePlants plants{first_order(1, 5, 2), first_order(1.2, 60, 20)};
     CascadeDesign design;

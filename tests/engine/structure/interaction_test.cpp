@@ -3,13 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/loop/loop.h"
 #include "engine/structure/interaction_gains.h"
+#include "engine/structure/structured_peak.h"
 #include "tests/engine/structure/plants.h"
 
 namespace tunewright::structure {
@@ -160,6 +164,72 @@ TEST(Interaction, OptimaAreAtMostTwoPerMilleAboveThoseOfAnIndependentSearch) {
         EXPECT_TRUE(result->figures.stable);
         EXPECT_TRUE(result->figures.unstable_subsets.empty());
     }
+}
+
+/// mu of S by the formula for two loops, on a grid that resolves every turn of the dead times.
+double finest_mu(const PlantMatrix& plants, const std::vector<IdealPid>& controllers) {
+    double most = 0;
+    const auto value = [&](double omega) {
+        const std::complex<double> s(0, omega), C0 = controller_response(to_parallel(controllers[0]), s),
+                                                C1 = controller_response(to_parallel(controllers[1]), s);
+        const auto a = 1.0 + plants[0][0]->at(s) * C0, b = plants[0][1]->at(s) * C1, c = plants[1][0]->at(s) * C0,
+                   d = 1.0 + plants[1][1]->at(s) * C1, det = a * d - b * c;
+        const double f = (std::norm(a) + std::norm(d) + 2 * std::abs(b * c)) / std::norm(det);
+        return std::sqrt((f + std::sqrt(f * f - 4 / std::norm(det))) / 2);
+    };
+    for (double omega = 1e-4; omega < 30; omega *= 1.0003) most = std::max(most, value(omega));
+    return most;
+}
+
+TEST(Interaction, TheLimitHoldsBetweenTheFrequenciesOfTheSearch) {
+    // The first two plants have their peak in a narrow ripple of the dead times.
+    std::vector<PlantMatrix> cases{{{first_order(2.18, 5.64, 0.306), first_order(-6.02, 13.3, 2.59)},
+                                    {first_order(0.531, 20.5, 0.698), first_order(0.889, 4.92, 2.04)}}};
+    RandomNumbers random(5);
+    for (int i = 0; i < 5; ++i) {
+        const auto plant = [&](double K) {
+            return first_order(K, random.log_uniform(3, 30), random.log_uniform(0.3, 6));
+        };
+        const double product = 1 - 1 / random.log_uniform(0.4, 4);
+        cases.push_back({{plant(1), plant(product)}, {plant(1), plant(1)}});
+    }
+    for (const PlantMatrix& plants : cases) {
+        const auto result = design_interaction(plants, {.mu = 1.9}, {});
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_LE(finest_mu(plants, result->controllers), 1.9 * (1 + 1e-5));
+    }
+}
+
+TEST(StructuredPeak, OfAProductOfTwoVectorsItIsTheSumOfTheirProducts) {
+    // S = a b^H with one complex gain in each row: mu = sum |a_i b_i|.
+    RandomNumbers random(3);
+    for (const Eigen::Index n : {2, 3}) {
+        StructuredValues one_after_the_other;
+        for (int i = 0; i < 40; ++i) {
+            Eigen::VectorXcd a(n), b(n);
+            for (Eigen::Index k = 0; k < n; ++k) {
+                a[k] = std::polar(random.log_uniform(0.1, 10), random.log_uniform(0.1, 6));
+                b[k] = std::polar(random.log_uniform(0.1, 10), random.log_uniform(0.1, 6));
+            }
+            const double expected = a.cwiseAbs().dot(b.cwiseAbs());
+            EXPECT_NEAR(structured_value(a * b.adjoint()), expected, 1e-7 * expected);
+            EXPECT_NEAR(one_after_the_other(a * b.adjoint()), expected, 1e-7 * expected);
+        }
+    }
+}
+
+TEST(StructuredPeak, ScaledRowsAndColumnsLeaveItAsItIs) {
+    RandomNumbers random(4);
+    for (int i = 0; i < 20; ++i) {
+        Eigen::Matrix3cd S;
+        for (auto& entry : S.reshaped()) entry = std::polar(random.log_uniform(0.2, 5), random.log_uniform(0.1, 6));
+        const Eigen::Vector3d d(random.log_uniform(0.1, 10), 1, random.log_uniform(0.1, 10));
+        const double value = structured_value(S);
+        EXPECT_NEAR(structured_value(d.asDiagonal() * S * d.cwiseInverse().asDiagonal()), value, 1e-5 * value);
+        EXPECT_GE(value, S.diagonal().cwiseAbs().maxCoeff());
+        EXPECT_LE(value, S.operatorNorm() * (1 + 1e-12));
+    }
+    EXPECT_NEAR(structured_value(Eigen::Matrix3cd::Identity()), 1, 1e-12) << "equal singular values";
 }
 
 TEST(Interaction, ARowWhosePlantsIntegrateIsStableAndHasTheIntegralOfItsLoop) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -152,6 +153,27 @@ TEST(Predictor, ThePredictivePiIsTheSmithPredictorWhoseLambdaIsTheLag) {
         ASSERT_TRUE(design);
         EXPECT_NEAR(design->figures.Ms, row.Ms, 5e-4);
         EXPECT_NEAR(design->figures.load->IE, -(1 + row.T), 1e-4);
+    }
+}
+
+TEST(Predictor, LimitsHoldOnAPlantThatTheModelDescribesRoughly) {
+    struct Row {
+        PredictorKind kind;
+        LinearPlant plant;
+        std::optional<double> dead_time_error;
+    };
+    const PredictorModel model{1, 5, 4};
+    for (const Row& row : {Row{PredictorKind::smith, transfer({1.1}, {4, 5.8, 1}, 4.2), {}},
+                           {PredictorKind::filtered_smith, transfer({1.1}, {4, 5.8, 1}, 3.8), 0.3},
+                           {PredictorKind::smith, transfer({0.9}, {4, 5.8, 1}, 4), 0.4},
+                           {PredictorKind::smith, first_order(1.2, 5, 4), {}}}) {
+        const auto design = design_predictor(model, row.plant,
+                                             {.kind = row.kind, .Ms = 1.6, .dead_time_error = row.dead_time_error}, {});
+        ASSERT_TRUE(design) << design.error().message;
+        EXPECT_LE(design->figures.Ms, 1.6 * (1 + 1e-5));
+        const double window = std::min(*design->figures.dead_time_up, *design->figures.dead_time_down);
+        EXPECT_GE(window, row.dead_time_error.value_or(0) * 4 * (1 - 1e-4));
+        EXPECT_TRUE(row.dead_time_error || design->figures.Ms > 1.6 * (1 - 1e-4)) << "the quickest that holds";
     }
 }
 

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/code/composer.h"
-#include "engine/code/settings.h"
 #include "engine/number_text.h"
 
 namespace tunewright::structure {
@@ -312,14 +310,6 @@ Expected<Program> interaction_program(const std::vector<SampledPid>& controllers
         "a part of the dead time.");
     for (std::string& sentence : notes_on_sum()) notes.push_back(std::move(sentence));
     return whole.take(std::move(notes));
-}
-
-std::optional<double> proposed_sample_time(const std::vector<ParallelPid>& controllers) {
-    std::optional<double> shortest;
-    for (const ParallelPid& gains : controllers)
-        if (const auto own = code::proposed_sample_time(gains))
-            shortest = std::min(shortest.value_or(std::numeric_limits<double>::infinity()), *own);
-    return shortest;
 }
 
 }  // namespace tunewright::structure

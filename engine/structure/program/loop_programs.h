@@ -42,7 +42,4 @@ using Decoupling = std::vector<std::vector<std::optional<Feedforward>>>;
 Expected<code::Program> interaction_program(const std::vector<SampledPid>& controllers,
                                             const std::vector<code::CodeOptions>& u, const Decoupling& elements = {});
 
-/// The proposed sample time of the fastest controller (code/settings.h); empty if none has one.
-std::optional<double> proposed_sample_time(const std::vector<ParallelPid>& controllers);
-
 }  // namespace tunewright::structure

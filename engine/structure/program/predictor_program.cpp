@@ -132,8 +132,14 @@ Expected<ParallelPid> predictor_pid(const PredictorController& controller) {
 Expected<Program> predictor_program(const PredictorController& controller, double Ts, const code::CodeOptions& u) {
     const auto gains = predictor_pid(controller);
     if (!gains) return gains.error();
+    return predictor_program(controller, SampledPid{.gains = *gains, .Ts = Ts}, u);
+}
+
+Expected<Program> predictor_program(const PredictorController& controller, const SampledPid& law,
+                                    const code::CodeOptions& u) {
+    const double Ts = law.Ts;
     const PredictorModel& m = controller.model;
-    const auto pid = code::pid_algorithm({.gains = *gains, .Ts = Ts}, u);
+    const auto pid = code::pid_algorithm(law, u);
     if (!pid) return pid;
     if (m.L > code::kMaxDelayCalls * Ts)
         return Error{ErrorKind::invalid_argument, "sample_time",

@@ -5,7 +5,6 @@
 #include <random>
 
 #include "engine/code/settings.h"
-#include "tests/engine/code/machine.h"
 #include "tests/engine/code/reference.h"
 
 namespace tunewright::code {

@@ -1,5 +1,5 @@
 // The controller once more, written from its description with complete histories instead of states: the reference for
-// the generated program.
+// the generated program, and calls of that program.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,24 @@
 #include <vector>
 
 #include "engine/code/algorithm.h"
+#include "engine/code/interpreter.h"
 
 namespace tunewright::code {
+
+/// The program of one controller.
+class Machine : public Interpreter {
+public:
+    using Interpreter::Interpreter;
+
+    double step(double r, double y, bool manual = false, double manual_output = 0) {
+        (*this)["setpoint"] = r;
+        (*this)["measurement"] = y;
+        (*this)["manual"] = manual ? 1 : 0;
+        (*this)["manual_output"] = manual_output;
+        call();
+        return (*this)["u"];
+    }
+};
 
 /// The settings that a user may change between two calls; gains with their sign.
 struct Gains {

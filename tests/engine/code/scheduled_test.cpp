@@ -6,7 +6,6 @@
 
 #include <random>
 
-#include "tests/engine/code/machine.h"
 #include "tests/engine/code/reference.h"
 
 namespace tunewright::code {

@@ -265,10 +265,5 @@ TEST(LoopPrograms, WhatCannotBeWrittenIsRefusedAtItsPlace) {
               "controllers/1/rate_limit");
 }
 
-TEST(LoopPrograms, TheFastestControllerDecidesTheSampleTime) {
-    EXPECT_EQ(proposed_sample_time({to_parallel(pi(1, 60)), to_parallel(pi(1, 3))}), 0.2);
-    EXPECT_EQ(proposed_sample_time({{.Kp = 1}}), std::nullopt);
-}
-
 }  // namespace
 }  // namespace tunewright::structure

@@ -1155,6 +1155,7 @@ export type components = {
       compressed: boolean;
       enough: boolean;
       remarks: components["schemas"]["Warning"][];
+      readings: string[];
       why_null?: {
         [key: string]: string;
       };
@@ -1557,8 +1558,16 @@ export type components = {
       ended?: string;
     };
     CascadeRequest: {
+      structure?: "cascade";
       name?: string;
       units?: components["schemas"]["Units"];
+      evaluate?: components["schemas"]["StructureEvaluate"];
+      implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
       inner: components["schemas"]["CascadeLoop"];
       outer: components["schemas"]["CascadeLoop"];
       arrangement?: "series" | "parallel";
@@ -1567,6 +1576,9 @@ export type components = {
       weights?: components["schemas"]["CascadeWeights"];
       baseline?: components["schemas"]["CascadePair"];
       compare_single?: boolean;
+    };
+    StructureEvaluate: {
+      points?: number;
     };
     CascadeLoop: {
       plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
@@ -1591,6 +1603,7 @@ export type components = {
       outer: components["schemas"]["Controller"];
     };
     CascadeAnswer: {
+      structure: "cascade";
       inner: {
         controller: components["schemas"]["Controller"];
         robustness: {
@@ -1631,7 +1644,29 @@ export type components = {
         };
       };
       baseline?: components["schemas"]["CascadeBaseline"];
+      partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      settings?: components["schemas"]["StructureTyping"][];
+      responses: {
+        of: string;
+        input: string;
+        t: number[];
+        signals: {
+          name: string;
+          values: number[];
+        }[];
+      }[];
+      sensitivities: {
+        omega: number[];
+        curves: {
+          of: string;
+          loop: string;
+          limit: number | null;
+          values: number[];
+        }[];
+      };
+      units?: components["schemas"]["Units"];
+      request_hash?: string;
       why_null?: {
         [key: string]: string;
       };
@@ -1677,9 +1712,22 @@ export type components = {
         [key: string]: number | null;
       };
     };
+    StructureTyping: {
+      loop: string;
+      typing: components["schemas"]["SettingsAnswer"] | null;
+      why?: string;
+    };
     LevelRequest: {
+      structure?: "level";
       name?: string;
       units?: components["schemas"]["Units"];
+      evaluate?: components["schemas"]["StructureEvaluate"];
+      implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
       volume: number;
       largest_step: number;
       allowed: number;
@@ -1698,6 +1746,7 @@ export type components = {
       Ti?: number;
     };
     LevelAnswer: {
+      structure: "level";
       design: components["schemas"]["LevelDesign"];
       bound: number;
       robustness: {
@@ -1707,7 +1756,29 @@ export type components = {
         };
       };
       frontier: components["schemas"]["LevelDesign"][];
+      partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      settings?: components["schemas"]["StructureTyping"][];
+      responses: {
+        of: string;
+        input: string;
+        t: number[];
+        signals: {
+          name: string;
+          values: number[];
+        }[];
+      }[];
+      sensitivities: {
+        omega: number[];
+        curves: {
+          of: string;
+          loop: string;
+          limit: number | null;
+          values: number[];
+        }[];
+      };
+      units?: components["schemas"]["Units"];
+      request_hash?: string;
     };
     LevelDesign: {
       Kc: number | null;
@@ -1720,8 +1791,16 @@ export type components = {
       overshoot_percent: number | null;
     };
     FeedforwardRequest: {
+      structure?: "feedforward";
       name?: string;
       units?: components["schemas"]["Units"];
+      evaluate?: components["schemas"]["StructureEvaluate"];
+      implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
       plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
       disturbance: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
       feedback: components["schemas"]["Controller"] | {
@@ -1741,11 +1820,34 @@ export type components = {
       Lf: number;
     };
     FeedforwardAnswer: {
+      structure: "feedforward";
       feedback: components["schemas"]["Controller"];
       variants: components["schemas"]["FeedforwardVariant"][];
       late: number;
       peak_bound: number;
+      partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      settings?: components["schemas"]["StructureTyping"][];
+      responses: {
+        of: string;
+        input: string;
+        t: number[];
+        signals: {
+          name: string;
+          values: number[];
+        }[];
+      }[];
+      sensitivities: {
+        omega: number[];
+        curves: {
+          of: string;
+          loop: string;
+          limit: number | null;
+          values: number[];
+        }[];
+      };
+      units?: components["schemas"]["Units"];
+      request_hash?: string;
     };
     FeedforwardVariant: {
       kind: "none" | "static" | "inverse" | "guzman_hagglund" | "optimum" | "given";
@@ -1767,8 +1869,16 @@ export type components = {
       why_not?: string;
     };
     InteractionRequest: {
+      structure?: "interaction";
       name?: string;
       units?: components["schemas"]["Units"];
+      evaluate?: components["schemas"]["StructureEvaluate"];
+      implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
       plant: (components["schemas"]["Plant"] | components["schemas"]["TypedPlant"] | null | 0)[][];
       pairing?: number[] | null;
       controllers?: ("PI" | "PID") | components["schemas"]["Controller"][];
@@ -1784,6 +1894,7 @@ export type components = {
       y?: number[];
     };
     InteractionAnswer: {
+      structure: "interaction";
       rga: (number | null)[][];
       condition: number;
       pairings: components["schemas"]["Pairing"][];
@@ -1804,7 +1915,29 @@ export type components = {
       };
       F_blt: number | null;
       compared: components["schemas"]["ComparedControllers"][];
+      partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      settings?: components["schemas"]["StructureTyping"][];
+      responses: {
+        of: string;
+        input: string;
+        t: number[];
+        signals: {
+          name: string;
+          values: number[];
+        }[];
+      }[];
+      sensitivities: {
+        omega: number[];
+        curves: {
+          of: string;
+          loop: string;
+          limit: number | null;
+          values: number[];
+        }[];
+      };
+      units?: components["schemas"]["Units"];
+      request_hash?: string;
       why_null?: {
         [key: string]: string;
       };
@@ -1834,8 +1967,16 @@ export type components = {
       why_not?: string;
     };
     PredictorRequest: {
+      structure?: "predictor";
       name?: string;
       units?: components["schemas"]["Units"];
+      evaluate?: components["schemas"]["StructureEvaluate"];
+      implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
       plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
       model?: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
       kind?: "smith" | "filtered_smith" | "predictive_pi";
@@ -1852,6 +1993,7 @@ export type components = {
       den: number[];
     };
     PredictorAnswer: {
+      structure: "predictor";
       controller: components["schemas"]["PredictorController"];
       lambda?: number;
       Tf?: number;
@@ -1861,7 +2003,29 @@ export type components = {
       setpoint: components["schemas"]["StructureStep"];
       pid: components["schemas"]["Controller"] | null;
       pid_IAE: number | null;
+      partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      settings?: components["schemas"]["StructureTyping"][];
+      responses: {
+        of: string;
+        input: string;
+        t: number[];
+        signals: {
+          name: string;
+          values: number[];
+        }[];
+      }[];
+      sensitivities: {
+        omega: number[];
+        curves: {
+          of: string;
+          loop: string;
+          limit: number | null;
+          values: number[];
+        }[];
+      };
+      units?: components["schemas"]["Units"];
+      request_hash?: string;
       why_null?: {
         [key: string]: string;
       };
@@ -2280,6 +2444,7 @@ export type RangePassage = components['schemas']['RangePassage'];
 export type RangeRun = components['schemas']['RangeRun'];
 export type RangeNonlinearRun = components['schemas']['RangeNonlinearRun'];
 export type CascadeRequest = components['schemas']['CascadeRequest'];
+export type StructureEvaluate = components['schemas']['StructureEvaluate'];
 export type CascadeLoop = components['schemas']['CascadeLoop'];
 export type LoopDesign = components['schemas']['LoopDesign'];
 export type CascadeLimits = components['schemas']['CascadeLimits'];
@@ -2290,6 +2455,7 @@ export type StructureStep = components['schemas']['StructureStep'];
 export type SingleLoop = components['schemas']['SingleLoop'];
 export type CascadeBaseline = components['schemas']['CascadeBaseline'];
 export type Conclusion = components['schemas']['Conclusion'];
+export type StructureTyping = components['schemas']['StructureTyping'];
 export type LevelRequest = components['schemas']['LevelRequest'];
 export type FlowLoop = components['schemas']['FlowLoop'];
 export type LevelSettings = components['schemas']['LevelSettings'];

@@ -205,6 +205,28 @@ test("a job opens with its answer and without another design, and a change makes
   });
 });
 
+test("report and code of every structure: the question is posted once, as a job", async () => {
+  for (const [id] of EXAMPLES)
+    await withPage(`#/structure/${id}`, {}, async (page) => {
+      await verdict(page).waitFor();
+      let jobs = 0;
+      page.on("request", (request) => (jobs += request.method() === "POST" && request.url().endsWith("/v1/jobs") ? 1 : 0));
+      const [report] = await Promise.all([page.waitForEvent("popup"), page.getByRole("button", { name: "Report", exact: true }).click()]);
+      await report.getByRole("heading", { name: "Verdict" }).waitFor();
+      assert.match(report.url(), /\/v1\/jobs\/[^/]+\/report\.html/);
+      await report.close();
+      await page.getByRole("button", { name: "Code", exact: true }).click();
+      const text = page.getByRole("region", { name: "Source text" });
+      await text.getByText(/FUNCTION_BLOCK/).first().waitFor();
+      for (const [language, word] of [["C", /#include/], ["Python", /def |class /]]) {
+        await page.getByRole("tab", { name: language, exact: true }).click();
+        await text.getByText(word).first().waitFor();
+      }
+      assert.equal(jobs, 1, id);
+      assert.deepEqual(await accessibilityViolations(page), [], id);
+    });
+});
+
 test("the settings of every controller are typed into the user's product", async () => {
   await withPage("#/structure/cascade", {}, async (page) => {
     await verdict(page).waitFor();

@@ -103,14 +103,16 @@ test("plants that are objects are left to the service to write", () => {
 
 test("every conclusion of the contract has a sentence without a gap", () => {
   const figures = { gain: 3, gain_inner: 9.7, gain_outer: 0.8, Ms: 1.5, limit: 1.4, speed_ratio: 2, at_least: 3, rate_over_bound: 1.04, highest: 2, allowed: 1.8, IAE: 4, IAE_none: 3, peak: 0.7, peak_bound: 0.6, wrong: 0.2, IAE_pid: 5, window: 2, relative_gain: -1, niederlinski: -1, other: 2, mu: 1.9, count: 1 };
-  const codes = "unstable cascade-pays cascade-gains-little inner-too-slow inner-peak-above outer-peak-above valve-peak-above near-lowest-rate level-above-room flow-loop-unstable flow-loop-too-slow feedforward-exact feedforward-pays feedforward-gains-little gain-alone-worse-than-none peak-unavoidable wrong-model-worse-than-none pid-does-as-well predictor-pays limited-by-dead-time-error narrow-dead-time-window controller-unstable pairing-impossible other-pairing-better hardly-interacting mu-above subsets-unstable better-than-blt".split(" ");
+  const codes = "unstable cascade-pays cascade-gains-little inner-too-slow inner-peak-above outer-peak-above valve-peak-above near-lowest-rate level-above-room flow-loop-unstable flow-loop-too-slow feedforward-exact feedforward-pays feedforward-gains-little gain-alone-worse-than-none peak-unavoidable wrong-model-worse-than-none pid-does-as-well predictor-pays limited-by-dead-time-error narrow-dead-time-window controller-unstable pairing-impossible other-pairing-better hardly-interacting mu-above subsets-unstable better-than-blt decoupler-helps".split(" ");
   for (const code of codes) {
     const { text } = conclusionWords({ code, figures } as never, units);
     assert.match(text, /^[A-Z].*\.$/, code);
-    assert.doesNotMatch(text, /–|NaN|undefined/, code);
+    assert.doesNotMatch(text, /–|NaN|undefined|[{}]/, code);
     assert.notEqual(text, `${code.replaceAll("-", " ")}.`);
   }
   assert.match(conclusionWords({ code: "cascade-pays", figures } as never, units).text, /has 9\.70 times its IAE after a load at the valve, and 0\.800 times after/);
+  assert.match(conclusionWords({ code: "level-above-room", figures } as never, units).text, /by 2\.00 °C, above the allowed 1\.80 °C\.$/);
+  assert.match(conclusionWords({ code: "level-above-room", figures } as never, unitNames(undefined)).text, /by 2\.00, above the allowed 1\.80\.$/);
   assert.match(conclusionWords({ code: "wrong-model-worse-than-none", figures } as never, units).text, /wrong by 20 %/);
   assert.deepEqual(conclusionWords({ code: "brand-new", figures: {} } as never, units), { code: "brand-new", level: "note", text: "brand new." });
 });
@@ -168,7 +170,7 @@ test("choices of a level: by overshoot, with the design among them", () => {
   assert.equal(levelChoices(cascade), null);
 });
 
-const overlaps = (a: Box, b: Box): boolean => a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+const overlaps = (a: Box, b: Box): boolean => a.left < b.left + b.width && b.left < a.left + a.width && a.top < b.top + b.height && b.top < a.top + a.height;
 
 test("diagrams: every block has its place inside, and no two overlap, at every width", () => {
   for (const id of STRUCTURES)
@@ -182,7 +184,7 @@ test("diagrams: every block has its place inside, and no two overlap, at every w
         assert.ok(plan.width <= width + 0.5, `${id}: ${plan.width} in ${width}`);
         const boxes = Object.values(plan.boxes);
         for (const [index, box] of boxes.entries()) {
-          assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= plan.width && box.y + box.height <= plan.height, `${id} ${width}`);
+          assert.ok(box.left >= 0 && box.top >= 0 && box.left + box.width <= plan.width && box.top + box.height <= plan.height, `${id} ${width}`);
           for (const other of boxes.slice(index + 1)) assert.ok(!overlaps(box, other), `${id} ${JSON.stringify(more)} ${width}`);
         }
         assert.doesNotMatch(JSON.stringify(plan.drawing), /NaN|null|Infinity/);

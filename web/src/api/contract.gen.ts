@@ -95,6 +95,9 @@ export type components = {
         verdict?: string;
         action?: string;
       };
+      structure?: {
+        verdict?: string[];
+      };
       error?: string;
     };
     Job: {
@@ -110,8 +113,8 @@ export type components = {
       attempts?: number;
       not_before?: string;
       outline?: components["schemas"]["JobOutline"];
-      request: components["schemas"]["TuningRequest"] | components["schemas"]["RangeRequest"] | components["schemas"]["CheckRequest"] | null;
-      result?: components["schemas"]["TuningResult"] | components["schemas"]["RangeResult"] | components["schemas"]["CheckResult"];
+      request: components["schemas"]["TuningRequest"] | components["schemas"]["RangeRequest"] | components["schemas"]["CheckRequest"] | components["schemas"]["CascadeRequest"] | components["schemas"]["LevelRequest"] | components["schemas"]["FeedforwardRequest"] | components["schemas"]["InteractionRequest"] | components["schemas"]["PredictorRequest"] | null;
+      result?: components["schemas"]["TuningResult"] | components["schemas"]["RangeResult"] | components["schemas"]["CheckResult"] | components["schemas"]["CascadeAnswer"] | components["schemas"]["LevelAnswer"] | components["schemas"]["FeedforwardAnswer"] | components["schemas"]["InteractionAnswer"] | components["schemas"]["PredictorAnswer"];
       error?: components["schemas"]["Problem"];
       partial?: boolean;
       links?: {
@@ -1748,6 +1751,7 @@ export type components = {
     LevelAnswer: {
       structure: "level";
       design: components["schemas"]["LevelDesign"];
+      gap?: number;
       bound: number;
       robustness: {
         Ms: number | null;
@@ -1995,6 +1999,11 @@ export type components = {
     PredictorAnswer: {
       structure: "predictor";
       controller: components["schemas"]["PredictorController"];
+      model: {
+        K: number;
+        T?: number;
+        L: number;
+      };
       lambda?: number;
       Tf?: number;
       beta?: number;

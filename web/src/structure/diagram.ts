@@ -7,8 +7,8 @@ import { loopsOf } from "./structures.ts";
 import type { Texts } from "./structures.ts";
 
 export interface Box {
-  x: number;
-  y: number;
+  left: number;
+  top: number;
   width: number;
   height: number;
 }
@@ -257,9 +257,9 @@ function drawn(plan: Plan, turned: boolean): Diagram {
   const [right, bottom] = at(high);
   const boxes = Object.fromEntries(
     [...plan.parts].filter(([name]) => /^\w/.test(name)).map(([name, spot]) => {
-      const [x, y] = at([spot.m - spot.hm, spot.c - spot.hc]);
+      const [left, top] = at([spot.m - spot.hm, spot.c - spot.hc]);
       const size: Place = turned ? [2 * spot.hc, 2 * spot.hm] : [2 * spot.hm, 2 * spot.hc];
-      return [name, { x, y, width: size[0], height: size[1] }];
+      return [name, { left, top, width: size[0], height: size[1] }];
     }),
   );
   return {

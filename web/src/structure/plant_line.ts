@@ -12,7 +12,7 @@ import { pointerOf } from "./question.ts";
 import type { FieldSpec } from "./structures.ts";
 
 export interface PlantLine {
-  elements: HTMLElement[];
+  element: HTMLElement;
   field: Field<HTMLInputElement>;
   /** The text was set, or the unit of time has changed. */
   read(time: string): void;
@@ -21,8 +21,8 @@ export interface PlantLine {
 
 const TYPED = "2 e^(-8s)/(30s+1)";
 
-export function plantLine(spec: FieldSpec, errors: FormErrors, time: () => string): PlantLine {
-  const field = textField({ label: spec.label, bare: true, placeholder: spec.placeholder ?? TYPED, pointer: () => pointerOf(spec.key) }, errors);
+export function plantLine(spec: FieldSpec, value: string, errors: FormErrors, time: () => string): PlantLine {
+  const field = textField({ label: spec.label, bare: true, value, placeholder: spec.placeholder ?? TYPED, pointer: () => pointerOf(spec.key) }, errors);
   const formula = h("div", { class: "formula small", role: "status" });
   const say = (sentence: string, look: string): void => formula.replaceChildren(h("span", { class: look }, sentence));
   const calls = latest<PlantQuestion, PlantAnswer>(parsePlant, {
@@ -42,8 +42,9 @@ export function plantLine(spec: FieldSpec, errors: FormErrors, time: () => strin
   }
 
   field.input.addEventListener("input", () => read(time()));
+  read(time());
   return {
-    elements: [field.element, formula],
+    element: h("div", { class: "plant-line" }, field.element, formula),
     field,
     read,
     dispose() {

@@ -37,7 +37,7 @@ export function structureResult(announce: (sentence: string) => void, documents:
   const verdict = h("section", { class: "verdict", "aria-label": "Verdict" });
   const rows = h("div", { class: "structure-settings" });
   const copy = copyButton({ label: "Copy all", text: () => settings.map(settingLines).join("\n\n") || null }, announce);
-  const typing = h("section", { class: "card", "aria-label": "Settings to type" }, h("div", { class: "card-head" }, h("h2", {}, "Settings to type"), h("div", { class: "actions" }, copy)), documents.trouble, rows);
+  const typing = h("section", { class: "card", "aria-label": "Settings to type" }, h("div", { class: "card-head" }, h("h2", {}, "Settings to type"), h("div", { class: "actions" }, copy, documents.actions)), documents.trouble, rows);
   const plots = plotGrid(announce);
   const tables = h("div", { class: "structure-tables" });
   const stale = staleMark(() => element);
@@ -48,6 +48,7 @@ export function structureResult(announce: (sentence: string) => void, documents:
     verdict.className = `verdict ${head ? LEVEL_CLASS[head.level] : ""}`;
     verdict.replaceChildren(
       h("h2", { "data-code": head?.code }, withMinus(head?.text ?? NO_REMARKS)),
+      ...Object.values(("why_null" in answer && answer.why_null) || {}).map((why) => h("p", {}, why)),
       ...rest.map(({ code, level, text }) => h("p", { class: LEVEL_CLASS[level], "data-code": code }, withMinus(text))),
     );
   }

@@ -39,6 +39,8 @@ export interface StructureSpec {
   title: string;
   /** What it is for, in one sentence. */
   purpose: string;
+  /** Its section in the document on structures. */
+  section: string;
   fields(texts: Texts): FieldSpec[];
   blocks(texts: Texts): BlockSpec[];
   /** Members that are always sent. */
@@ -166,6 +168,7 @@ export const STRUCTURE_SPECS: Record<StructureId, StructureSpec> = {
   cascade: {
     title: "Cascade",
     purpose: "An inner loop, such as a flow, takes up loads before the outer loop feels them.",
+    section: "a-cascade",
     fields: cascadeFields,
     blocks: () => [
       { id: "C1", title: "C1, outer", fields: ["outer.tune.controller", "outer.controller"] },
@@ -187,6 +190,7 @@ export const STRUCTURE_SPECS: Record<StructureId, StructureSpec> = {
   feedforward: {
     title: "Feedforward",
     purpose: "A measured disturbance moves the valve before the measurement does.",
+    section: "feedforward",
     fields: feedforwardFields,
     blocks: () => [
       { id: "F", title: "F, compensator", fields: ["feedforward.by", "controller"] },
@@ -210,6 +214,7 @@ export const STRUCTURE_SPECS: Record<StructureId, StructureSpec> = {
   level: {
     title: "Level",
     purpose: "A vessel takes up steps of its inflow, and its outflow moves slowly.",
+    section: "a-level-that-smooths-flows",
     fields: levelFields,
     blocks: () => [
       { id: "C", title: "Level controller", fields: ["aim", "controller"] },
@@ -224,6 +229,7 @@ export const STRUCTURE_SPECS: Record<StructureId, StructureSpec> = {
   interaction: {
     title: "Interaction",
     purpose: "Two or three loops that disturb each other are designed together. Write 0 for a path that is not there.",
+    section: "interacting-loops",
     fields: interactionFields,
     blocks: (texts) => [
       ...loopsOf(texts).map((loop) => ({ id: `C${loop + 1}`, title: `C${loop + 1}, of y${loop + 1}`, fields: [`controllers.${loop}`] })),
@@ -239,6 +245,7 @@ export const STRUCTURE_SPECS: Record<StructureId, StructureSpec> = {
   predictor: {
     title: "Predictor",
     purpose: "A model predicts past a long dead time; a PID with the same Ms stands next to it.",
+    section: "predictors",
     fields: predictorFields,
     blocks: () => [
       { id: "C", title: "C", fields: ["kind", "controller.C"] },

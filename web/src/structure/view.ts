@@ -16,6 +16,7 @@ import { requestMenu } from "../views/request_menu.ts";
 import type { Store } from "../store.ts";
 import type { View } from "../views/start.ts";
 import { structureDocuments } from "./documents.ts";
+import { documentAddress } from "../words/documents.ts";
 import { structureForm, unitsOf } from "./form.ts";
 import { ownSettings } from "./own_settings.ts";
 import { linkedTexts, objectPlants, readQuestion, textsOf, textsOfLink } from "./question.ts";
@@ -61,7 +62,7 @@ export function structureView(store: Store, announce: (sentence: string) => void
   const trouble = h("p", { class: "trouble", role: "alert", hidden: true });
   const menu = requestMenu(announce);
   const link = copyButton({ label: "Copy link", look: "quiet", text: () => new URL(formatRoute(routeOf(id, form.texts())), location.href).href }, announce);
-  const form = structureForm(errors, { onChange: changed });
+  const form = structureForm(errors, changed);
   const documents = structureDocuments(announce);
   const own = ownSettings(store, announce, () => ask(false));
   const result = structureResult(announce, documents, own);
@@ -171,7 +172,8 @@ export function structureView(store: Store, announce: (sentence: string) => void
     }
     id = next;
     kinds.select(id);
-    purpose.textContent = STRUCTURE_SPECS[id].purpose;
+    const { purpose: words, section } = STRUCTURE_SPECS[id];
+    purpose.replaceChildren(`${words} `, h("a", { href: documentAddress("structures", section), target: "_blank" }, "How it is designed"));
     form.show(id, texts);
     typed.set(id, texts);
     own.setUnits(unitsOf(texts));

@@ -4,62 +4,53 @@ import type { Controller, Finding } from "../api/types.ts";
 import { formatNumber, formatSetting, formatShare, plainSetting, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
-type Level = Finding["level"];
-
-interface Sentence {
-  level: Level;
-  text(figure: (name: string) => string, value: (name: string) => number, units: UnitNames): string;
-}
-
-/** As it follows a number. */
-const after = (unit: string): string => (unit ? ` ${unit}` : "");
-
-const SENTENCES: Record<Conclusion["code"], Sentence> = {
-  unstable: { level: "bad", text: () => "The loops are not stable together, so there are no other figures." },
-  "cascade-pays": { level: "good", text: (figure) => `The cascade pays. A single loop has ${figure("gain_inner")} times its IAE after a load at the valve, and ${figure("gain_outer")} times after a load on the outer plant.` },
-  "cascade-gains-little": { level: "warning", text: (figure) => `The cascade gains little. A single loop has ${figure("gain_inner")} times its IAE after a load at the valve, and ${figure("gain_outer")} times after a load on the outer plant.` },
-  "inner-too-slow": { level: "warning", text: (figure) => `The inner loop is only ${figure("speed_ratio")} times as fast as the outer one; it should be at least ${figure("at_least")} times as fast.` },
-  "inner-peak-above": { level: "bad", text: (figure) => `Ms of the inner loop is ${figure("Ms")}, above its limit of ${figure("limit")}.` },
-  "outer-peak-above": { level: "bad", text: (figure) => `Ms of the outer loop is ${figure("Ms")}, above its limit of ${figure("limit")}.` },
-  "valve-peak-above": { level: "bad", text: (figure) => `Ms at the valve is ${figure("Ms")}, above its limit of ${figure("limit")}.` },
-  "near-lowest-rate": { level: "good", text: (figure) => `The outflow moves about as slowly as it can. Its largest rate is ${figure("rate_over_bound")} times the lowest that any controller can reach with this room for the level.` },
-  "level-above-room": { level: "bad", text: (figure, _, { y }) => `The level rises by ${figure("highest")}${after(y)}, above the allowed ${figure("allowed")}${after(y)}.` },
-  "flow-loop-too-slow": { level: "warning", text: (figure) => `The flow loop is slow for this level loop: with it Ms is ${figure("Ms")}, above ${figure("limit")}.` },
-  "flow-loop-unstable": { level: "bad", text: () => "With this flow loop the level is not stable." },
-  "feedforward-exact": { level: "good", text: () => "The compensator is exact: the disturbance does not move y." },
-  "feedforward-pays": { level: "good", text: (figure) => `Feedforward pays. Without it the IAE after the disturbance is ${figure("gain")} times as large.` },
-  "feedforward-gains-little": { level: "warning", text: (figure) => `Feedforward gains little. Without it the IAE after the disturbance is ${figure("gain")} times as large.` },
-  "gain-alone-worse-than-none": { level: "warning", text: (figure) => `A gain alone would be worse than no feedforward: its IAE is ${figure("IAE")}, without feedforward ${figure("IAE_none")}.` },
-  "peak-unavoidable": { level: "note", text: (figure, _, { y }) => `The valve acts later than the disturbance, so y reaches ${figure("peak_bound")}${after(y)} with any compensator; without feedforward it reaches ${figure("peak")}${after(y)}.` },
-  "wrong-model-worse-than-none": {
-    level: "warning",
-    text: (figure, value) => `If a gain or dead time is wrong by ${formatShare(value("wrong"))} %, the IAE can be ${figure("IAE")}, above the ${figure("IAE_none")} without feedforward.`,
-  },
-  "pid-does-as-well": { level: "note", text: (figure) => `A PID does as well. After a load its IAE is ${figure("IAE_pid")}, that of the predictor ${figure("IAE")}.` },
-  "predictor-pays": { level: "good", text: (figure) => `The predictor pays. After a load its IAE is ${figure("IAE")}, that of a PID ${figure("IAE_pid")}.` },
-  "limited-by-dead-time-error": { level: "note", text: (figure) => `The error that the dead time may have limits this design; Ms is ${figure("Ms")}.` },
-  "narrow-dead-time-window": { level: "bad", text: (figure, _, { time }) => `The loop is stable only while the dead time is known to ${figure("window")} ${time}; ${figure("at_least")} ${time} are advisable.` },
-  "controller-unstable": { level: "warning", text: () => "The controller by itself is not stable. It must not run without its feedback, as with the valve at a limit." },
-  "pairing-impossible": { level: "bad", text: (figure) => `This pairing cannot be used with integral action: its lowest relative gain is ${figure("relative_gain")}, its Niederlinski index ${figure("niederlinski")}.` },
-  "other-pairing-better": { level: "warning", text: (figure) => `Another pairing is better: its lowest relative gain is ${figure("other")}, that of this one ${figure("relative_gain")}.` },
-  "hardly-interacting": { level: "good", text: () => "The loops hardly disturb each other and can be tuned one by one: all relative gains are near 1." },
-  "mu-above": { level: "bad", text: (figure) => `The peak mu of all loops is ${figure("mu")}, above its limit of ${figure("limit")}.` },
-  "subsets-unstable": { level: "warning", text: (_, value) => `${value("count") === 1 ? "One set of loops is" : `${value("count")} sets of loops are`} not stable with the others in manual.` },
-  "better-than-blt": { level: "good", text: (figure) => `Luyben's BLT tuning has ${figure("gain")} times the weighted IAE after loads.` },
+/** Sentences with {names} of figures; {wrong%} is one in percent, and { y} a unit after a blank. */
+const SENTENCES: Record<string, readonly [Finding["level"], string]> = {
+  unstable: ["bad", "The loops are not stable together, so there are no other figures."],
+  "cascade-pays": ["good", "The cascade pays. A single loop has {gain_inner} times its IAE after a load at the valve, and {gain_outer} times after a load on the outer plant."],
+  "cascade-gains-little": ["warning", "The cascade gains little. A single loop has {gain_inner} times its IAE after a load at the valve, and {gain_outer} times after a load on the outer plant."],
+  "inner-too-slow": ["warning", "The inner loop is only {speed_ratio} times as fast as the outer one; it should be at least {at_least} times as fast."],
+  "inner-peak-above": ["bad", "Ms of the inner loop is {Ms}, above its limit of {limit}."],
+  "outer-peak-above": ["bad", "Ms of the outer loop is {Ms}, above its limit of {limit}."],
+  "valve-peak-above": ["bad", "Ms at the valve is {Ms}, above its limit of {limit}."],
+  "near-lowest-rate": ["good", "The outflow moves about as slowly as it can. Its largest rate is {rate_over_bound} times the lowest that any controller can reach with this room for the level."],
+  "level-above-room": ["bad", "The level rises by {highest}{ y}, above the allowed {allowed}{ y}."],
+  "flow-loop-too-slow": ["warning", "The flow loop is slow for this level loop: with it Ms is {Ms}, above {limit}. Make it faster, or allow the level more room."],
+  "flow-loop-unstable": ["bad", "With this flow loop the level is not stable."],
+  "feedforward-exact": ["good", "The compensator is exact: the disturbance does not move y."],
+  "feedforward-pays": ["good", "Feedforward pays. Without it the IAE after the disturbance is {gain} times as large."],
+  "feedforward-gains-little": ["warning", "Feedforward gains little. Without it the IAE after the disturbance is {gain} times as large."],
+  "gain-alone-worse-than-none": ["warning", "A gain alone would be worse than no feedforward: its IAE is {IAE}, without feedforward {IAE_none}."],
+  "peak-unavoidable": ["note", "The valve acts later than the disturbance, so y reaches {peak_bound}{ y} with any compensator; without feedforward it reaches {peak}{ y}."],
+  "wrong-model-worse-than-none": ["warning", "If a gain or dead time is wrong by {wrong%} %, the IAE can be {IAE}, above the {IAE_none} without feedforward."],
+  "pid-does-as-well": ["note", "A PID with the same Ms does as well. After a load its IAE is {IAE_pid}, that of the predictor {IAE}."],
+  "predictor-pays": ["good", "The predictor pays. After a load its IAE is {IAE}, that of a PID with the same Ms {IAE_pid}."],
+  "limited-by-dead-time-error": ["note", "The error that the dead time may have limits this design, not Ms, which is {Ms}."],
+  "narrow-dead-time-window": ["bad", "The loop is stable only while the dead time is known to {window}{ time}; {at_least}{ time} are advisable."],
+  "controller-unstable": ["warning", "The controller by itself is not stable. It must not run without its feedback, as with the valve at a limit."],
+  "pairing-impossible": ["bad", "This pairing cannot be used with integral action: its lowest relative gain is {relative_gain}, its Niederlinski index {niederlinski}."],
+  "other-pairing-better": ["warning", "Another pairing is better: its lowest relative gain is {other}, that of this one {relative_gain}."],
+  "hardly-interacting": ["good", "The loops hardly disturb each other and can be tuned one by one: all relative gains are near 1."],
+  "mu-above": ["bad", "The peak mu of all loops is {mu}, above its limit of {limit}."],
+  "subsets-unstable": ["warning", "Some loops are not stable while others are in manual: {count} sets of them."],
+  "better-than-blt": ["good", "Luyben's BLT tuning has {gain} times the weighted IAE after loads."],
+  "decoupler-helps": ["note", "Without a decoupler the weighted IAE after loads is {gain} times as large at the same limit."],
 };
 
 export interface StructureFinding {
   code: string;
-  level: Level;
+  level: Finding["level"];
   text: string;
 }
 
 /** A code that is newer than the page is shown as it is. */
 export function conclusionWords({ code, figures }: Conclusion, units: UnitNames): StructureFinding {
-  const sentence = SENTENCES[code] as Sentence | undefined;
-  const value = (name: string): number => figures[name] ?? NaN;
-  const text = sentence?.text((name) => formatNumber(value(name)), value, units) ?? `${code.replaceAll("-", " ")}.`;
-  return { code, level: sentence?.level ?? "note", text };
+  const [level, sentence] = SENTENCES[code] ?? (["note", `${code.replaceAll("-", " ")}.`] as const);
+  const text = sentence.replace(/\{( ?)(\w+)(%?)\}/g, (_, blank: string, name: string, percent: string) => {
+    if (blank) return units[name as keyof UnitNames] && ` ${units[name as keyof UnitNames]}`;
+    return percent ? formatShare(figures[name] ?? NaN) : formatNumber(figures[name]);
+  });
+  return { code, level, text };
 }
 
 const OF: Record<string, string> = {

@@ -59,36 +59,36 @@ Codec<std::map<std::string, double>> sizes() {
 template <class Asked>
 void add_rules(Description<Asked>& d) {
     d.field("sample_time", &Asked::sample_time, maybe(number({.exclusive_minimum = 0})),
-                   "Time from one call to the next.", {.unit = "time"})
-            .field("integral", &Asked::integral, integral_rule(), "Rule of the integral.")
-            .field("derivative", &Asked::derivative, derivative_rule(), "Rule of the derivative.")
-            .field("slope_samples", &Asked::slope_samples, maybe(integer(1, code::kMaxSlopeSamples)),
-                   "Number of sample times that the rule slope spans.")
-            .field("form", &Asked::velocity, choice<bool>({{"position", false}, {"velocity", true}}),
-                   "position: u is a sum; velocity: the last u plus its increment.")
-            .field("anti_windup", &Asked::anti_windup,
-                   maybe(choice<AntiWindup>(
-                       {{"back_calculation", AntiWindup::back_calculation}, {"clamping", AntiWindup::clamping}})),
-                   "Behaviour of the integral at a limit.")
-            .field("tracking_time", &Asked::tracking_time, maybe(number({.exclusive_minimum = 0})),
-                   "Tracking time of back-calculation.", {.unit = "time"})
-            .field("u_min", &Asked::u_min, maybe(number()), "Least u.", {.unit = "u"})
-            .field("u_max", &Asked::u_max, maybe(number()), "Largest u.", {.unit = "u"})
-            .field("rate_limit", &Asked::rate_limit, maybe(number({.exclusive_minimum = 0})),
-                   "Largest change of u per unit of time.", {.unit = "u/time"})
-            .field("bias", &Asked::bias, maybe(number()), "u at the operating point.", {.unit = "u"})
-            .field("y0", &Asked::y0, maybe(number()), "y at the operating point.", {.unit = "y"})
-            .field("r2_min", &Asked::r2_min, maybe(number()), "Cascade: least set point of the inner loop.", {.unit = "y"})
-            .field("r2_max", &Asked::r2_max, maybe(number()), "Cascade: its largest.", {.unit = "y"})
-            .field("r2_bias", &Asked::r2_bias, maybe(number()), "Cascade: it at the operating point.", {.unit = "y"})
-            .field("d0", &Asked::d0, maybe(number()), "Feedforward: the disturbance at the operating point.")
-            .field("compensator", &Asked::compensator,
-                   maybe(choice<std::string>({{"static", "static"},
-                                              {"inverse", "inverse"},
-                                              {"guzman_hagglund", "guzman_hagglund"},
-                                              {"optimum", "optimum"},
-                                              {"given", "given"}})),
-                   "Feedforward: which of the answer's; default: the last.");
+            "Time from one call to the next.", {.unit = "time"})
+        .field("integral", &Asked::integral, integral_rule(), "Rule of the integral.")
+        .field("derivative", &Asked::derivative, derivative_rule(), "Rule of the derivative.")
+        .field("slope_samples", &Asked::slope_samples, maybe(integer(1, code::kMaxSlopeSamples)),
+               "Number of sample times that the rule slope spans.")
+        .field("form", &Asked::velocity, choice<bool>({{"position", false}, {"velocity", true}}),
+               "position: u is a sum; velocity: the last u plus its increment.")
+        .field("anti_windup", &Asked::anti_windup,
+               maybe(choice<AntiWindup>(
+                   {{"back_calculation", AntiWindup::back_calculation}, {"clamping", AntiWindup::clamping}})),
+               "Behaviour of the integral at a limit.")
+        .field("tracking_time", &Asked::tracking_time, maybe(number({.exclusive_minimum = 0})),
+               "Tracking time of back-calculation.", {.unit = "time"})
+        .field("u_min", &Asked::u_min, maybe(number()), "Least u.", {.unit = "u"})
+        .field("u_max", &Asked::u_max, maybe(number()), "Largest u.", {.unit = "u"})
+        .field("rate_limit", &Asked::rate_limit, maybe(number({.exclusive_minimum = 0})),
+               "Largest change of u per unit of time.", {.unit = "u/time"})
+        .field("bias", &Asked::bias, maybe(number()), "u at the operating point.", {.unit = "u"})
+        .field("y0", &Asked::y0, maybe(number()), "y at the operating point.", {.unit = "y"})
+        .field("r2_min", &Asked::r2_min, maybe(number()), "Cascade: least set point of the inner loop.", {.unit = "y"})
+        .field("r2_max", &Asked::r2_max, maybe(number()), "Cascade: its largest.", {.unit = "y"})
+        .field("r2_bias", &Asked::r2_bias, maybe(number()), "Cascade: it at the operating point.", {.unit = "y"})
+        .field("d0", &Asked::d0, maybe(number()), "Feedforward: the disturbance at the operating point.")
+        .field("compensator", &Asked::compensator,
+               maybe(choice<std::string>({{"static", "static"},
+                                          {"inverse", "inverse"},
+                                          {"guzman_hagglund", "guzman_hagglund"},
+                                          {"optimum", "optimum"},
+                                          {"given", "given"}})),
+               "Feedforward: which of the answer's; default: the last.");
 }
 
 }  // namespace
@@ -111,8 +111,7 @@ const Description<SampledWish>& sampled_wish_contract() {
         Description<SampledWish> d("StructureSampled",
                                    "The program of the controllers, call by call, with its limits.");
         add_rules(d);
-        d.field("steps", &SampledWish::steps, sizes(),
-                "Such as {\"setpoint\": 5}; 1 for the others.")
+        d.field("steps", &SampledWish::steps, sizes(), "Such as {\"setpoint\": 5}; 1 for the others.")
             .check([](const Json& value, SampledWish& wish, Reader& reader) { check_question(value, wish, reader); });
         return d;
     }();

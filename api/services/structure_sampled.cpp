@@ -59,9 +59,9 @@ Expected<SampledPlants> sampled_plants(const FeedforwardRequest& request, const 
 }
 
 Expected<SampledPlants> sampled_plants(const InteractionRequest& request, const InteractionAnswer& answer) {
-    SampledPlants out{structure::interaction_scene(
-                          structure::paired(request.plant, answer.gains.pairings[answer.chosen].input_of)),
-                      {}};
+    SampledPlants out{
+        structure::interaction_scene(structure::paired(request.plant, answer.gains.pairings[answer.chosen].input_of)),
+        {}};
     for (std::size_t i = 0; i < request.plant.size(); ++i) out.names.push_back("y_" + std::to_string(i + 1));
     return out;
 }
@@ -77,7 +77,8 @@ std::variant<SampledView, Problem> run_program(const StructureRequest& request, 
     auto made = structure_program(answer, Json(), asked_of(request));
     if (auto* problem = std::get_if<Problem>(&made)) return below_sampled(std::move(*problem));
     const auto& [program, sample_time] = std::get<StructureProgram>(made);
-    SampledView out{.sample_time = sample_time.seconds, .answer = {}, .names = std::move(plants->names), .points = request.points};
+    SampledView out{
+        .sample_time = sample_time.seconds, .answer = {}, .names = std::move(plants->names), .points = request.points};
     for (const code::Declaration& output : code::of_role(program, code::VariableRole::output))
         out.names.push_back(output.name);
     auto run = structure::run_sampled(program, plants->scene, request.sampled->steps, control);

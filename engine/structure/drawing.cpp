@@ -66,8 +66,8 @@ std::vector<double> frequencies(const std::vector<Answered>& all, int points) {
     std::vector<const LinearPlant*> plants;
     for (const Answered& one : all)
         for (const Block& block : one.view->diagram.blocks()) plants.push_back(&block.plant);
-    const std::vector<double> grid = frequencies_around(plants, kBelowCorners, kAboveCorners, 1,
- std::numeric_limits<double>::infinity());
+    const std::vector<double> grid =
+        frequencies_around(plants, kBelowCorners, kAboveCorners, 1, std::numeric_limits<double>::infinity());
     std::vector<double> out;
     const double ratio = grid.back() / grid.front();
     for (int i = 0; i < points; ++i) out.push_back(grid.front() * std::pow(ratio, double(i) / (points - 1)));

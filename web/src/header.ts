@@ -13,6 +13,7 @@ export function header(store: Store, tools: HTMLElement[]): HTMLElement {
     identify: h("a", { href: "#/identify" }, "Identify"),
     relay: h("a", { href: "#/relay" }, "Relay test"),
     range: h("a", { href: "#/range" }, "Range"),
+    structure: h("a", { href: "#/structure" }, "Structure"),
     check: h("a", { href: "#/check" }, "Check"),
     design: h("a", { href: "#/", hidden: true }, "Design"),
     compare: h("a", { href: "#/", hidden: true }, "Compare"),

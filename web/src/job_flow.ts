@@ -2,10 +2,11 @@
 import { isCheckRequest } from "./api/check.ts";
 import { getJob, postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
 import { newest } from "./api/latest.ts";
+import { isStructureRequest } from "./api/structure.ts";
 import { isFinal } from "./api/types.ts";
 import type { Job, TuningRequest } from "./api/types.ts";
 import { byAllMethods } from "./form/tuning_request.ts";
-import { addressOfCheck, addressOfJob, showsJob, stepAddress } from "./routes.ts";
+import { addressOfCheck, addressOfJob, addressOfStructure, showsJob, stepAddress } from "./routes.ts";
 import type { JobScreen, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 
@@ -44,12 +45,17 @@ async function ended(job: Job, onWaiting: (job: Job) => void): Promise<Job> {
   return job;
 }
 
+/** Checks and structures have screens of their own. */
+export const ownAddress = ({ id, request }: Job): string | null =>
+  isCheckRequest(request) ? addressOfCheck(id) : isStructureRequest(request) ? addressOfStructure(id) : null;
+
 export function jobFlow(store: Store): JobFlow {
   let stopWatching: (() => void) | null = null;
   const beginRetune = newest();
 
   function open(job: Job, screen: JobScreen = "design"): void {
-    if (isCheckRequest(job.request)) return void (location.hash = addressOfCheck(job.id));
+    const own = ownAddress(job);
+    if (own) return void (location.hash = own);
     const nothing = { selected: null, drawn: null, sort: "", rankMs: null, step: null };
     store.set((workspace) => ({ ...workspace, job, jobTrouble: "", ...nothing }));
     location.hash = addressOfJob(job.id, screen);
@@ -90,8 +96,8 @@ export function jobFlow(store: Store): JobFlow {
   }
 
   function take(job: Job): void {
-    // A check has a screen of its own.
-    if (isCheckRequest(job.request)) return location.replace(addressOfCheck(job.id));
+    const own = ownAddress(job);
+    if (own) return location.replace(own);
     store.set((workspace) =>
       showsJob(workspace.route) && workspace.route.job === job.id ? { ...workspace, job, jobTrouble: "" } : workspace,
     );

@@ -15,6 +15,7 @@ export type Route =
   /** An operating range: of an example, of that job, or the current content. */
   | { screen: "range"; example: string; job: string | null }
   | CheckRoute
+  | StructureRoute
   | { screen: "relay"; plant: string; values: Record<string, string> }
   /** `values`: the positions of its sliders, if they differ from the proposal. `step`: the user's own step, if it was
       typed. */
@@ -55,6 +56,15 @@ export interface CheckRoute {
   list: ListView;
 }
 
+/** Loops around the loop. `id`: the structure; "": the current content. `values`: the whole question as texts; `job`: of
+ * that job instead. */
+export interface StructureRoute {
+  screen: "structure";
+  id: string;
+  values: Record<string, string>;
+  job: string | null;
+}
+
 const LIST_PARTS = ["sort", "cause", "owner", "text"] as const;
 
 /** The loops that are shown of a work list, and their order. */
@@ -85,6 +95,9 @@ export const addressOfJob = (job: string, screen: JobScreen): string =>
 export const addressOfCheck = (id: string, kind: CheckedBy["kind"] = "job"): string =>
   formatRoute({ screen: "check", of: { kind, id }, from: null, before: null, loop: null, other: null, list: WHOLE_LIST });
 
+/** The question and the answer of a job about a structure. */
+export const addressOfStructure = (job: string): string => formatRoute({ screen: "structure", id: "", values: {}, job });
+
 export const sameCheck = (a: CheckedBy | null, b: CheckedBy | null): boolean => a?.kind === b?.kind && a?.id === b?.id;
 
 function checkRoute(of: CheckedBy | null, values: Record<string, string>): CheckRoute {
@@ -111,6 +124,7 @@ export function parseRoute(hash: string): Route {
   if (parts[0] === "identify") return { screen: "identify", job: null };
   if (parts[0] === "range") return { screen: "range", example: parts[1] ?? "", job: null };
   if (parts[0] === "check") return checkRoute(null, values);
+  if (parts[0] === "structure") return { screen: "structure", id: parts[1] ?? "", values, job: null };
   if (parts[0] === "relay") return { screen: "relay", plant: parts[1] ?? "", values };
   if (parts[0] === "jobs" && !parts[1]) return { screen: "jobs", text: values["q"] ?? "" };
   if (parts[0] === "batches" && parts[1] && parts[2] === "check") return checkRoute({ kind: "batch", id: parts[1] }, values);
@@ -131,6 +145,7 @@ export function parseRoute(hash: string): Route {
     if (parts[2] === "check") return checkRoute({ kind: "job", id: parts[1] }, values);
     if (parts[2] === "identify") return { screen: "identify", job: parts[1] };
     if (parts[2] === "range") return { screen: "range", example: "", job: parts[1] };
+    if (parts[2] === "structure") return { screen: "structure", id: "", values: {}, job: parts[1] };
     if (parts[2] === "edit") return { screen: "edit", job: parts[1] };
     const { entry, ...others } = values;
     const [modified, step] = withoutStep(others);
@@ -189,6 +204,11 @@ export function formatRoute(route: Route): string {
       return route.example === "" ? "#/range" : `#/range/${encodeURIComponent(route.example)}`;
     case "check":
       return formatCheck(route);
+    case "structure": {
+      if (route.job !== null) return `#/jobs/${encodeURIComponent(route.job)}/structure`;
+      const query = new URLSearchParams(route.values).toString();
+      return `#/structure${route.id === "" ? "" : `/${encodeURIComponent(route.id)}`}${query ? `?${query}` : ""}`;
+    }
     case "example":
       return `#/examples/${encodeURIComponent(route.id)}`;
     case "edit":

@@ -7,11 +7,13 @@ import type { Batch, FieldError, IdentifyRequest, Job, TuningRequest, Units } fr
 import type { CheckView } from "./check/view.ts";
 import { h } from "./dom.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
+import { isStructureRequest } from "./api/structure.ts";
 import type { JobFlow } from "./job_flow.ts";
 import type { RangeView } from "./range/view.ts";
-import { addressOfJob, entryState, formatRoute, keepInEntry, parseRoute, rewriteAddress, showsJob, showsStart, WHOLE_LIST } from "./routes.ts";
-import type { CheckRoute, JobRoute, Route } from "./routes.ts";
+import { addressOfJob, addressOfStructure, entryState, formatRoute, keepInEntry, parseRoute, rewriteAddress, showsJob, showsStart, WHOLE_LIST } from "./routes.ts";
+import type { CheckRoute, JobRoute, Route, StructureRoute } from "./routes.ts";
 import type { Store } from "./store.ts";
+import type { StructureView } from "./structure/view.ts";
 import type { CandidateChoice } from "./views/cards/candidates_card.ts";
 import type { RelayView } from "./views/relay.ts";
 import { startView } from "./views/start.ts";
@@ -45,6 +47,7 @@ export function screens(
   let relay: RelayView | null = null;
   let range: RangeView | null = null;
   let check: CheckView | null = null;
+  let structure: StructureView | null = null;
   /** The loop on Start whose plant the relay test uses; null: it has one of its own. */
   let relayOf: { units: Units | undefined; loop: number } | null = null;
   const ofStart = (): boolean => relayOf !== null && relayOf.loop === startScreen().loops();
@@ -55,7 +58,7 @@ export function screens(
 
   function mount(next: View, title: string, focus: boolean): void {
     if (view !== next) {
-      if (view && ![start, relay, range, check].includes(view as never)) view.dispose();
+      if (view && ![start, relay, range, check, structure].includes(view as never)) view.dispose();
       if (next === start) start.takeBack();
       view = next;
       stage.replaceChildren(next.element);
@@ -161,6 +164,19 @@ export function screens(
     });
     mount(check, "Check · Tunewright", focus);
     check.open(route);
+  }
+
+  /** Kept as well; its address holds the whole question. */
+  async function openStructure(route: StructureRoute, focus: boolean): Promise<void> {
+    const part = await later(import("./structure/view.ts"), route, "Structure", focus);
+    if (!part) return;
+    structure ??= part.structureView(store, announce, {
+      onQuestion(next) {
+        rewriteAddress(next, next);
+      },
+    });
+    mount(structure, "Structure · Tunewright", focus);
+    structure.open(route);
   }
 
   /** Kept too, with its typed text. */
@@ -286,6 +302,7 @@ export function screens(
         // A range is changed on its own screen.
         if (isRangeRequest(job.request))
           return location.replace(formatRoute({ screen: "range", example: "", job: job.id }));
+        if (isStructureRequest(job.request)) return location.replace(addressOfStructure(job.id));
         if (isCheckRequest(job.request))
           return location.replace(formatRoute({ screen: "check", of: null, from: job.id, before: null, loop: null, other: null, list: WHOLE_LIST }));
         if (job.request) fillForEntry(job.request, false);
@@ -387,6 +404,7 @@ export function screens(
     }
     if (route.screen === "range") return void openRange(route, !first);
     if (route.screen === "check") return void openCheck(route, !first);
+    if (route.screen === "structure") return void openStructure(route, !first);
     if (route.screen === "relay") return void openRelay(route, !first);
     if (route.screen === "docs") return void openApi(route, !first);
     if (route.screen === "methods") return void openMethods(route, !first);

@@ -277,8 +277,10 @@ void write_sampled_response(const SampledView& view, const structure::SampledRes
     out.key("figures").begin_array();
     const bool moves_setpoint = response.name.starts_with("setpoint");
     for (const structure::StepFigures& f : response.figures)
-        step_view_contract().write({f.IAE, f.IE, moves_setpoint ? f.overshoot : f.peak, f.TV,
- f.settles ? "" : "The response does not settle; if the loops are stable, call them less often."}, out);
+        step_view_contract().write(
+            {f.IAE, f.IE, moves_setpoint ? f.overshoot : f.peak, f.TV,
+             f.settles ? "" : "The response does not settle; if the loops are stable, call them less often."},
+            out);
     out.end_array();
     out.key("largest_rate").number(response.largest_rate);
     std::vector<double> t;

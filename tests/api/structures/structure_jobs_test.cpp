@@ -30,17 +30,26 @@ struct StructureCase {
 };
 
 std::vector<StructureCase> structure_cases() {
-    return {{"cascade", "CascadeAnswer", cascade_call,
-             {{"inner", {{"plant", "2 e^(-s)/(4s+1)"}}}, {"outer", {{"plant", "1.5 e^(-8s)/(30s+1)"}}}}},
-            {"level", "LevelAnswer", level_call,
-             {{"volume", 12}, {"largest_step", 4}, {"allowed", 1.8}, {"flow_loop", {{"T", 0.4}, {"L", 0.05}}}}},
-            {"feedforward", "FeedforwardAnswer", feedforward_call,
-             {{"plant", "1.5 e^(-15s)/(60s+1)"}, {"disturbance", "1/(15s+1)"}, {"feedback", {{"Kp", 1.3333}, {"Ti", 60}}}}},
-            {"interaction", "InteractionAnswer", interaction_call,
-             {{"plant", Json::array({Json::array({"12.8 e^(-s)/(16.7s+1)", "-18.9 e^(-3s)/(21s+1)"}),
-                                     Json::array({"6.6 e^(-7s)/(10.9s+1)", "-19.4 e^(-3s)/(14.4s+1)"})})},
-              {"controllers", Json::array({Json{{"Kp", 0.375}, {"Ti", 8.29}}, Json{{"Kp", -0.075}, {"Ti", 23.6}}})}}},
-            {"predictor", "PredictorAnswer", predictor_call, {{"plant", "2 e^(-4s)/(5s+1)"}, {"Ms", 1.6}}}};
+    return {
+        {"cascade",
+         "CascadeAnswer",
+         cascade_call,
+         {{"inner", {{"plant", "2 e^(-s)/(4s+1)"}}}, {"outer", {{"plant", "1.5 e^(-8s)/(30s+1)"}}}}},
+        {"level",
+         "LevelAnswer",
+         level_call,
+         {{"volume", 12}, {"largest_step", 4}, {"allowed", 1.8}, {"flow_loop", {{"T", 0.4}, {"L", 0.05}}}}},
+        {"feedforward",
+         "FeedforwardAnswer",
+         feedforward_call,
+         {{"plant", "1.5 e^(-15s)/(60s+1)"}, {"disturbance", "1/(15s+1)"}, {"feedback", {{"Kp", 1.3333}, {"Ti", 60}}}}},
+        {"interaction",
+         "InteractionAnswer",
+         interaction_call,
+         {{"plant", Json::array({Json::array({"12.8 e^(-s)/(16.7s+1)", "-18.9 e^(-3s)/(21s+1)"}),
+                                 Json::array({"6.6 e^(-7s)/(10.9s+1)", "-19.4 e^(-3s)/(14.4s+1)"})})},
+          {"controllers", Json::array({Json{{"Kp", 0.375}, {"Ti", 8.29}}, Json{{"Kp", -0.075}, {"Ti", 23.6}}})}}},
+        {"predictor", "PredictorAnswer", predictor_call, {{"plant", "2 e^(-4s)/(5s+1)"}, {"Ms", 1.6}}}};
 }
 
 Json called(const StructureCase& one) {
@@ -146,18 +155,16 @@ TEST(StructureJobs, SeriesAgreeWithTheFigures) {
     const Json interaction = called(cases[3]);
     for (std::size_t j = 0; j < 2; ++j)
         for (std::size_t i = 0; i < 2; ++i)
-            EXPECT_NEAR(
-                area_under(response_to(interaction, "design", "load_" + std::to_string(j + 1)), 2 * i, 0) /
-                    interaction["IAE_load"][j][i].get<double>(),
-                1, 0.02);
+            EXPECT_NEAR(area_under(response_to(interaction, "design", "load_" + std::to_string(j + 1)), 2 * i, 0) /
+                            interaction["IAE_load"][j][i].get<double>(),
+                        1, 0.02);
     EXPECT_NEAR(largest_of(interaction, "design", "mu"), interaction["mu"].get<double>(), 1e-3);
     const Json predictor = called(cases[4]);
     EXPECT_NEAR(area_under(response_to(predictor, "design", "load"), 0, 0) / predictor["load"]["IAE"].get<double>(), 1,
                 0.01);
     EXPECT_NEAR(area_under(response_to(predictor, "pid", "load"), 0, 0) / predictor["pid_IAE"].get<double>(), 1, 0.01);
     const Json level = called(cases[1]);
-    const auto levels =
-        response_to(level, "design", "inflow")["signals"][0]["values"].get<std::vector<double>>();
+    const auto levels = response_to(level, "design", "inflow")["signals"][0]["values"].get<std::vector<double>>();
     EXPECT_NEAR(*std::ranges::max_element(levels) / level["design"]["highest"].get<double>(), 1, 0.06);  // flow loop
 }
 
@@ -191,13 +198,16 @@ TEST(StructureJobs, AReportATableAndAProgramInEachLanguage) {
         EXPECT_THAT(page, HasSubstr(structure_title(one.name)));
         for (const char* part : {"Verdict", "Settings", "Figures", "Responses"}) EXPECT_THAT(page, HasSubstr(part));
         EXPECT_THAT(structure_text(result), HasSubstr("figure"));
-        for (const auto& [language, mark] : {std::pair{"st", "FUNCTION_BLOCK"}, {"c", "#ifndef"}, {"python", "class"}}) {
+        for (const auto& [language, mark] :
+             {std::pair{"st", "FUNCTION_BLOCK"}, {"c", "#ifndef"}, {"python", "class"}}) {
             const auto code = structure_code({result, ""}, {{"language", language}, {"u_min", "-9"}, {"u_max", "9"}});
             ASSERT_TRUE(std::holds_alternative<ControllerCode>(code)) << std::get<Problem>(code).detail;
             EXPECT_THAT(std::get<ControllerCode>(code).text, HasSubstr(mark));
-            EXPECT_THAT(std::get<ControllerCode>(code).file_name, HasSubstr(language == std::string("st") ? ".st" : "tunewright_"));
+            EXPECT_THAT(std::get<ControllerCode>(code).file_name,
+                        HasSubstr(language == std::string("st") ? ".st" : "tunewright_"));
         }
-        const auto wrong = structure_code({result, ""}, {{"language", "c"}, {one.name == "cascade" ? "d0" : "r2_max", "1"}});
+        const auto wrong =
+            structure_code({result, ""}, {{"language", "c"}, {one.name == "cascade" ? "d0" : "r2_max", "1"}});
         ASSERT_TRUE(std::holds_alternative<Problem>(wrong));
         EXPECT_THAT(to_json(std::get<Problem>(wrong)), HasSubstr("belongs to the code of a"));
     }
@@ -212,7 +222,8 @@ TEST(StructureJobs, ASampledRunComesCloseToTheContinuousLoops) {
         const Json& sampled = answer["sampled"];
         if (one.name == "cascade") {
             EXPECT_NEAR(sampled["Ms"]["inner"].get<double>(), answer["inner"]["robustness"]["Ms"].get<double>(), 0.02);
-            EXPECT_NEAR(sampled["Ms"]["valve"].get<double>(), answer["outer"]["robustness"]["Ms_valve"].get<double>(), 0.02);
+            EXPECT_NEAR(sampled["Ms"]["valve"].get<double>(), answer["outer"]["robustness"]["Ms_valve"].get<double>(),
+                        0.02);
             for (const Json& response : sampled["responses"])
                 EXPECT_NEAR(response["figures"][0]["IAE"].get<double>() /
                                 answer["performance"][response["input"].get<std::string>()]["IAE"].get<double>(),
@@ -222,9 +233,9 @@ TEST(StructureJobs, ASampledRunComesCloseToTheContinuousLoops) {
             EXPECT_NEAR(sampled["Ms"]["loop"].get<double>(), 1.6, 0.02);
         }
         if (one.name == "level") {
-            EXPECT_NEAR(sampled["responses"][0]["figures"][0]["peak"].get<double>() /
-                            answer["design"]["highest"].get<double>(),
-                        1, 0.06);
+            EXPECT_NEAR(
+                sampled["responses"][0]["figures"][0]["peak"].get<double>() / answer["design"]["highest"].get<double>(),
+                1, 0.06);
         }
         if (one.name == "feedforward") {
             EXPECT_NEAR(sampled["responses"][0]["figures"][0]["IAE"].get<double>() /
@@ -306,7 +317,8 @@ TEST(StructureRecords, OneRecordGivesBothPlantsOfACascade) {
     EXPECT_NEAR(outer["K"].get<double>(), 1.5, 0.02);
     EXPECT_NEAR(outer["L"].get<double>(), 8, 0.2);
     const Json exact = called(structure_cases()[0]);
-    EXPECT_NEAR(value["outer"]["controller"]["Kp"].get<double>(), exact["outer"]["controller"]["Kp"].get<double>(), 0.03);
+    EXPECT_NEAR(value["outer"]["controller"]["Kp"].get<double>(), exact["outer"]["controller"]["Kp"].get<double>(),
+                0.03);
 
     Json without = request;
     without["record"].erase("d");

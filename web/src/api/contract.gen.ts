@@ -95,6 +95,9 @@ export type components = {
         verdict?: string;
         action?: string;
       };
+      structure?: {
+        verdict?: string[];
+      };
       error?: string;
     };
     Job: {
@@ -110,8 +113,8 @@ export type components = {
       attempts?: number;
       not_before?: string;
       outline?: components["schemas"]["JobOutline"];
-      request: components["schemas"]["TuningRequest"] | components["schemas"]["RangeRequest"] | components["schemas"]["CheckRequest"] | null;
-      result?: components["schemas"]["TuningResult"] | components["schemas"]["RangeResult"] | components["schemas"]["CheckResult"];
+      request: components["schemas"]["TuningRequest"] | components["schemas"]["RangeRequest"] | components["schemas"]["CheckRequest"] | components["schemas"]["CascadeRequest"] | components["schemas"]["LevelRequest"] | components["schemas"]["FeedforwardRequest"] | components["schemas"]["InteractionRequest"] | components["schemas"]["PredictorRequest"] | null;
+      result?: components["schemas"]["TuningResult"] | components["schemas"]["RangeResult"] | components["schemas"]["CheckResult"] | components["schemas"]["CascadeAnswer"] | components["schemas"]["LevelAnswer"] | components["schemas"]["FeedforwardAnswer"] | components["schemas"]["InteractionAnswer"] | components["schemas"]["PredictorAnswer"];
       error?: components["schemas"]["Problem"];
       partial?: boolean;
       links?: {
@@ -1155,6 +1158,7 @@ export type components = {
       compressed: boolean;
       enough: boolean;
       remarks: components["schemas"]["Warning"][];
+      readings: string[];
       why_null?: {
         [key: string]: string;
       };
@@ -1557,8 +1561,16 @@ export type components = {
       ended?: string;
     };
     CascadeRequest: {
+      structure?: "cascade";
       name?: string;
       units?: components["schemas"]["Units"];
+      evaluate?: components["schemas"]["StructureEvaluate"];
+      implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
       inner: components["schemas"]["CascadeLoop"];
       outer: components["schemas"]["CascadeLoop"];
       arrangement?: "series" | "parallel";
@@ -1567,6 +1579,9 @@ export type components = {
       weights?: components["schemas"]["CascadeWeights"];
       baseline?: components["schemas"]["CascadePair"];
       compare_single?: boolean;
+    };
+    StructureEvaluate: {
+      points?: number;
     };
     CascadeLoop: {
       plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
@@ -1591,6 +1606,7 @@ export type components = {
       outer: components["schemas"]["Controller"];
     };
     CascadeAnswer: {
+      structure: "cascade";
       inner: {
         controller: components["schemas"]["Controller"];
         robustness: {
@@ -1631,7 +1647,29 @@ export type components = {
         };
       };
       baseline?: components["schemas"]["CascadeBaseline"];
+      partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      settings?: components["schemas"]["StructureTyping"][];
+      responses: {
+        of: string;
+        input: string;
+        t: number[];
+        signals: {
+          name: string;
+          values: number[];
+        }[];
+      }[];
+      sensitivities: {
+        omega: number[];
+        curves: {
+          of: string;
+          loop: string;
+          limit: number | null;
+          values: number[];
+        }[];
+      };
+      units?: components["schemas"]["Units"];
+      request_hash?: string;
       why_null?: {
         [key: string]: string;
       };
@@ -1677,9 +1715,22 @@ export type components = {
         [key: string]: number | null;
       };
     };
+    StructureTyping: {
+      loop: string;
+      typing: components["schemas"]["SettingsAnswer"] | null;
+      why?: string;
+    };
     LevelRequest: {
+      structure?: "level";
       name?: string;
       units?: components["schemas"]["Units"];
+      evaluate?: components["schemas"]["StructureEvaluate"];
+      implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
       volume: number;
       largest_step: number;
       allowed: number;
@@ -1698,7 +1749,9 @@ export type components = {
       Ti?: number;
     };
     LevelAnswer: {
+      structure: "level";
       design: components["schemas"]["LevelDesign"];
+      gap?: number;
       bound: number;
       robustness: {
         Ms: number | null;
@@ -1707,7 +1760,29 @@ export type components = {
         };
       };
       frontier: components["schemas"]["LevelDesign"][];
+      partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      settings?: components["schemas"]["StructureTyping"][];
+      responses: {
+        of: string;
+        input: string;
+        t: number[];
+        signals: {
+          name: string;
+          values: number[];
+        }[];
+      }[];
+      sensitivities: {
+        omega: number[];
+        curves: {
+          of: string;
+          loop: string;
+          limit: number | null;
+          values: number[];
+        }[];
+      };
+      units?: components["schemas"]["Units"];
+      request_hash?: string;
     };
     LevelDesign: {
       Kc: number | null;
@@ -1720,8 +1795,16 @@ export type components = {
       overshoot_percent: number | null;
     };
     FeedforwardRequest: {
+      structure?: "feedforward";
       name?: string;
       units?: components["schemas"]["Units"];
+      evaluate?: components["schemas"]["StructureEvaluate"];
+      implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
       plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
       disturbance: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
       feedback: components["schemas"]["Controller"] | {
@@ -1741,11 +1824,34 @@ export type components = {
       Lf: number;
     };
     FeedforwardAnswer: {
+      structure: "feedforward";
       feedback: components["schemas"]["Controller"];
       variants: components["schemas"]["FeedforwardVariant"][];
       late: number;
       peak_bound: number;
+      partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      settings?: components["schemas"]["StructureTyping"][];
+      responses: {
+        of: string;
+        input: string;
+        t: number[];
+        signals: {
+          name: string;
+          values: number[];
+        }[];
+      }[];
+      sensitivities: {
+        omega: number[];
+        curves: {
+          of: string;
+          loop: string;
+          limit: number | null;
+          values: number[];
+        }[];
+      };
+      units?: components["schemas"]["Units"];
+      request_hash?: string;
     };
     FeedforwardVariant: {
       kind: "none" | "static" | "inverse" | "guzman_hagglund" | "optimum" | "given";
@@ -1767,8 +1873,16 @@ export type components = {
       why_not?: string;
     };
     InteractionRequest: {
+      structure?: "interaction";
       name?: string;
       units?: components["schemas"]["Units"];
+      evaluate?: components["schemas"]["StructureEvaluate"];
+      implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
       plant: (components["schemas"]["Plant"] | components["schemas"]["TypedPlant"] | null | 0)[][];
       pairing?: number[] | null;
       controllers?: ("PI" | "PID") | components["schemas"]["Controller"][];
@@ -1784,6 +1898,7 @@ export type components = {
       y?: number[];
     };
     InteractionAnswer: {
+      structure: "interaction";
       rga: (number | null)[][];
       condition: number;
       pairings: components["schemas"]["Pairing"][];
@@ -1804,7 +1919,29 @@ export type components = {
       };
       F_blt: number | null;
       compared: components["schemas"]["ComparedControllers"][];
+      partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      settings?: components["schemas"]["StructureTyping"][];
+      responses: {
+        of: string;
+        input: string;
+        t: number[];
+        signals: {
+          name: string;
+          values: number[];
+        }[];
+      }[];
+      sensitivities: {
+        omega: number[];
+        curves: {
+          of: string;
+          loop: string;
+          limit: number | null;
+          values: number[];
+        }[];
+      };
+      units?: components["schemas"]["Units"];
+      request_hash?: string;
       why_null?: {
         [key: string]: string;
       };
@@ -1834,8 +1971,16 @@ export type components = {
       why_not?: string;
     };
     PredictorRequest: {
+      structure?: "predictor";
       name?: string;
       units?: components["schemas"]["Units"];
+      evaluate?: components["schemas"]["StructureEvaluate"];
+      implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
       plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
       model?: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
       kind?: "smith" | "filtered_smith" | "predictive_pi";
@@ -1852,7 +1997,13 @@ export type components = {
       den: number[];
     };
     PredictorAnswer: {
+      structure: "predictor";
       controller: components["schemas"]["PredictorController"];
+      model: {
+        K: number;
+        T?: number;
+        L: number;
+      };
       lambda?: number;
       Tf?: number;
       beta?: number;
@@ -1861,7 +2012,29 @@ export type components = {
       setpoint: components["schemas"]["StructureStep"];
       pid: components["schemas"]["Controller"] | null;
       pid_IAE: number | null;
+      partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      settings?: components["schemas"]["StructureTyping"][];
+      responses: {
+        of: string;
+        input: string;
+        t: number[];
+        signals: {
+          name: string;
+          values: number[];
+        }[];
+      }[];
+      sensitivities: {
+        omega: number[];
+        curves: {
+          of: string;
+          loop: string;
+          limit: number | null;
+          values: number[];
+        }[];
+      };
+      units?: components["schemas"]["Units"];
+      request_hash?: string;
       why_null?: {
         [key: string]: string;
       };
@@ -2280,6 +2453,7 @@ export type RangePassage = components['schemas']['RangePassage'];
 export type RangeRun = components['schemas']['RangeRun'];
 export type RangeNonlinearRun = components['schemas']['RangeNonlinearRun'];
 export type CascadeRequest = components['schemas']['CascadeRequest'];
+export type StructureEvaluate = components['schemas']['StructureEvaluate'];
 export type CascadeLoop = components['schemas']['CascadeLoop'];
 export type LoopDesign = components['schemas']['LoopDesign'];
 export type CascadeLimits = components['schemas']['CascadeLimits'];
@@ -2290,6 +2464,7 @@ export type StructureStep = components['schemas']['StructureStep'];
 export type SingleLoop = components['schemas']['SingleLoop'];
 export type CascadeBaseline = components['schemas']['CascadeBaseline'];
 export type Conclusion = components['schemas']['Conclusion'];
+export type StructureTyping = components['schemas']['StructureTyping'];
 export type LevelRequest = components['schemas']['LevelRequest'];
 export type FlowLoop = components['schemas']['FlowLoop'];
 export type LevelSettings = components['schemas']['LevelSettings'];

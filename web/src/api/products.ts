@@ -65,8 +65,8 @@ export type Language = "st" | "c" | "python";
 
 export interface CodeQuestion {
   job: string;
-  /** Index of the entry in the result; "schedule": the schedule of a range. */
-  index: number | "schedule";
+  /** Index of the entry in the result; "schedule": the schedule of a range; "all": every controller of a structure. */
+  index: number | "schedule" | "all";
   language: Language;
   sample_time?: number | undefined;
   u_min?: number | undefined;
@@ -76,8 +76,8 @@ export interface CodeQuestion {
 export function codePath({ job, index, ...question }: CodeQuestion): string {
   const query = new URLSearchParams();
   for (const [name, value] of Object.entries(question)) if (value !== undefined) query.set(name, String(value));
-  const part = index === "schedule" ? index : `controllers/${index}`;
-  return `v1/jobs/${encodeURIComponent(job)}/${part}/code?${query.toString()}`;
+  const part = index === "all" ? "" : index === "schedule" ? "/schedule" : `/controllers/${index}`;
+  return `v1/jobs/${encodeURIComponent(job)}${part}/code?${query.toString()}`;
 }
 
 export const getCode = (question: CodeQuestion): Promise<TextFile> => getText(codePath(question));

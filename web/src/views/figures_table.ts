@@ -5,14 +5,17 @@ import { explained } from "../reach/explanation.ts";
 import type { FigureGroup } from "../words/figures.ts";
 import { DASH } from "../words/numbers.ts";
 
-export interface TableColumn {
+/** What a column is about. */
+type Subject = Partial<Pick<Entry, "title" | "error">>;
+
+export interface TableColumn<T = Entry> {
   name: string;
-  entry: Entry;
+  entry: T;
   /** The swatch of its line in the plots, if it is drawn. */
   swatch(): Element | null;
 }
 
-export function figuresTable(caption: string, columns: TableColumn[], groups: FigureGroup[]): HTMLElement {
+export function figuresTable<T extends Subject>(caption: string, columns: TableColumn<T>[], groups: FigureGroup<T>[]): HTMLElement {
   const notes: string[] = [];
   const mark = (why: string): number => {
     if (!notes.includes(why)) notes.push(why);

@@ -17,6 +17,7 @@ export const DOCUMENTS: readonly Document[] = [
   { id: "records", title: "Recorded tests" },
   { id: "relay", title: "Relay tests" },
   { id: "range", title: "Operating ranges" },
+  { id: "structures", title: "Loops around the loop" },
   { id: "check", title: "Check of loops in operation" },
   { id: "uncertain", title: "Uncertain plants" },
   { id: "plants", title: "Plants in one line" },

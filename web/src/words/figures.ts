@@ -5,13 +5,13 @@ import { figureUnit } from "./figure_units.ts";
 import { formatNumber, formatPercent, formatShare, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
-export interface FigureRow {
+export interface FigureRow<T = Entry> {
   label: string;
   /** Explanation of the quantity for readers who do not know it. */
   meaning: string;
   /** Its longer explanation, if there is one. */
   about: ExplainedName | null;
-  value(entry: Entry): FigureValue;
+  value(entry: T): FigureValue;
 }
 
 export interface FigureValue {
@@ -20,11 +20,11 @@ export interface FigureValue {
   why: string;
 }
 
-export interface FigureGroup {
+export interface FigureGroup<T = Entry> {
   title: string;
   /** Shown directly, or under "all figures". */
   main: boolean;
-  rows: FigureRow[];
+  rows: FigureRow<T>[];
 }
 
 type Part = { why_null?: WhyNull } | undefined;

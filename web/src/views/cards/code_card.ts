@@ -17,7 +17,7 @@ import { copyButton } from "../copy.ts";
 
 export interface CodeSubject {
   job: string;
-  index: number | "schedule";
+  index: CodeQuestion["index"];
   name: string;
   units: UnitNames;
 }
@@ -26,6 +26,8 @@ export interface CodeCard {
   element: HTMLElement;
   /** null: there is no controller for a program. */
   show(subject: CodeSubject | null): void;
+  /** Shows the text at once. */
+  open(): void;
   /** Proposes the sample time and limits of the user's own controller. */
   propose(mine: MyController | null): void;
   dispose(): void;
@@ -130,12 +132,16 @@ export function codeCard(announce: (sentence: string) => void): CodeCard {
       subject = next;
       element.hidden = !next;
       if (!next) return;
-      const what = next.index === "schedule" ? `The schedule over ${next.name}` : `The controller of ${next.name}`;
+      const what = next.index === "schedule" ? `The schedule over ${next.name}` : next.index === "all" ? next.name : `The controller of ${next.name}`;
       whose.textContent = `${what} as a separate program, for a controller without a PID block or for a simulation. All times in it are in seconds.`;
       period.setUnit(next.units.time);
       low.setUnit(next.units.u);
       high.setUnit(next.units.u);
       ask();
+    },
+    open() {
+      details.open = true;
+      summary.focus();
     },
     propose(mine) {
       const write = (field: typeof period, value: number | undefined): void => {

@@ -1,0 +1,256 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS } from "../harness.mjs";
+
+const tests = browserTests();
+const { withPage, post } = tests;
+
+/** Structure, example, and plots with their traces. */
+const EXAMPLES = [
+  ["cascade", "Furnace with fuel flow", { "Set-point step": 6, "Load at the valve": 6, "Load on the outer plant": 6, "Sensitivity |S| of each loop": 4 }],
+  ["feedforward", "Heat exchanger with feed flow", { "Step of the disturbance": 8, "Sensitivity |S| of each loop": 1 }],
+  ["level", "Boiler feed water tank", { "Largest step of the inflow": 2, "Sensitivity |S| of each loop": 1 }],
+  ["interaction", "Wood and Berry's column", { "Set-point step 1": 8, "Load at the plant input 2": 8, "Sensitivity |S| of each loop": 6 }],
+  ["predictor", "Long pipe", { "Set-point step": 4, "Load at the plant input": 4, "Sensitivity |S| of each loop": 2 }],
+];
+
+const verdict = (page) => page.locator(".structure-results .verdict h2");
+/** The next answer of the service about a structure. */
+const answered = (page, id, holds = () => true) =>
+  page.waitForResponse((response) => response.url().endsWith(`/v1/${id}`) && holds(response.request().postDataJSON()));
+const field = (page, name) => page.getByLabel(name, { exact: true });
+const three = (value) => String(Number(value.toPrecision(3)));
+const figure = (page, label) => page.locator(".structure-tables tr").filter({ has: page.getByRole("rowheader", { name: label, exact: true }) });
+
+test("each example is one click away, and what is shown is what the service answers", async () => {
+  await withPage("#/structure", {}, async (page) => {
+    await verdict(page).waitFor();
+    for (const [id, title, plots] of [...EXAMPLES.slice(1), EXAMPLES[0]]) {
+      const asked = answered(page, id);
+      await page.getByRole("link", { name: title, exact: true }).click();
+      const answer = await (await asked).json();
+      await page.locator(`.structure-results .verdict h2[data-code="${answer.verdict[0].code}"]`).waitFor();
+      assert.equal(await page.locator(".structure-results .verdict [data-code]").count(), answer.verdict.length, id);
+      for (const [plot, count] of Object.entries(plots)) await tracesShown(page, plot, count);
+      assert.equal(await page.getByRole("tab", { selected: true }).innerText(), id[0].toUpperCase() + id.slice(1));
+      assert.match(page.url(), new RegExp(`#/structure/${id}\\?`));
+      assert.equal(await page.title(), "Structure · Tunewright");
+      assert.deepEqual(await accessibilityViolations(page), [], id);
+    }
+    const answer = await post("v1/cascade", { inner: { plant: "2 e^(-s)/(4s+1)", tune: { controller: "PI", Ms: 1.4 } }, outer: { plant: "1.5 e^(-8s)/(30s+1)", tune: { controller: "PID", Ms: 1.4 } }, limits: { Ms_valve: 1.6 } });
+    const row = await figure(page, "IAE after a load at the valve (s)").innerText();
+    assert.ok(row.includes(three(answer.performance.inner_load.IAE)) && row.includes(three(answer.single.performance.inner_load.IAE)), row);
+    const typing = await page.getByRole("region", { name: "Settings to type" }).innerText();
+    for (const value of [answer.outer.controller.Kp, answer.inner.controller.Ti]) assert.ok(typing.includes(String(Number(value.toPrecision(5)))), typing);
+    // The designed settings stand in their blocks too.
+    assert.match(await page.getByRole("group", { name: "C1, outer" }).innerText(), /Kp 0\.935/);
+  });
+});
+
+test("a slider is dragged: the design follows, the address holds the question, nothing moves", async () => {
+  await withPage("#/structure/level", {}, async (page) => {
+    await verdict(page).waitFor();
+    await page.evaluate(() => {
+      globalThis.shifts = 0;
+      new PerformanceObserver((list) => list.getEntries().forEach((entry) => (globalThis.shifts += entry.value))).observe({ type: "layout-shift" });
+    });
+    const range = page.getByLabel("Allowed deviation of the level, slider");
+    const { x, y, width, height } = await range.boundingBox();
+    await page.mouse.move(x + width / 2, y + height / 2);
+    await page.mouse.down();
+    const held = answered(page, "level");
+    for (let step = 1; step <= 10; step += 1) await page.mouse.move(x + width * (0.5 + 0.02 * step), y + height / 2);
+    assert.ok((await held).request().postDataJSON().allowed > 1.8);
+    await page.mouse.up();
+    const allowed = Number(await field(page, "Allowed deviation of the level (m)").inputValue());
+    assert.ok(allowed > 1.8);
+    await page.waitForURL((url) => url.hash.includes(`allowed=${allowed}`));
+    await page.getByText(`reached ${allowed.toPrecision(3)}`).waitFor();
+    assert.ok((await page.evaluate(() => globalThis.shifts)) < 0.005);
+    const before = await verdict(page).innerText();
+    const url = page.url();
+    await page.goto("about:blank");
+    await page.goto(url);
+    await verdict(page).waitFor();
+    assert.equal(await verdict(page).innerText(), before);
+    assert.equal(page.url(), url);
+    // By keys, and by typing.
+    const keyed = answered(page, "level");
+    await page.getByLabel("Allowed deviation of the level, slider").focus();
+    await page.keyboard.press("Shift+ArrowLeft");
+    assert.ok((await keyed).request().postDataJSON().allowed < allowed);
+    const typed = answered(page, "level", (request) => request.allowed === 2.5);
+    await field(page, "Allowed deviation of the level (m)").fill("2,5");
+    await page.keyboard.press("Enter");
+    await typed;
+  });
+});
+
+test("an optional limit is emptied, and is then left out", async () => {
+  await withPage("#/structure/feedforward", {}, async (page) => {
+    await verdict(page).waitFor();
+    const asked = answered(page, "feedforward");
+    await field(page, "First move of u").fill("");
+    await page.keyboard.press("Enter");
+    assert.equal((await asked).request().postDataJSON().feedforward, undefined);
+    const again = answered(page, "feedforward");
+    await field(page, "First move of u").fill("4");
+    await page.keyboard.press("Enter");
+    assert.deepEqual((await again).request().postDataJSON().feedforward, { jump: 4 });
+  });
+});
+
+test("a given controller begins with the designed settings; faults stand at their fields, and the answer before is marked", async () => {
+  await withPage(
+    "#/structure/cascade",
+    {},
+    async (page) => {
+      await verdict(page).waitFor();
+      const given = answered(page, "cascade");
+      await field(page, "Outer controller").selectOption("given");
+      assert.match(await field(page, "Settings of the outer controller").inputValue(), /^Kp 0\.93488, Ti 18\.108, Td 4\.3559, Tf 0\.43559$/);
+      assert.equal((await given).request().postDataJSON().outer.controller.Kp, 0.93488);
+      await field(page, "Settings of the outer controller").fill("Kp 5, Ti 10");
+      await page.keyboard.press("Tab");
+      await page.locator('.verdict.bad h2[data-code="unstable"]').waitFor();
+      await field(page, "Settings of the outer controller").fill("Kx 5");
+      await page.keyboard.press("Tab");
+      await page.getByText('"Kx" is not one of Kp').waitFor();
+      await page.getByText("These results belong to the last answered request").waitFor();
+      await field(page, "Settings of the outer controller").fill("Kp 1, Ti 20");
+      await page.keyboard.press("Tab");
+      await page.getByText("These results belong").waitFor({ state: "hidden" });
+      await field(page, "Inner plant, from the valve to y2").fill("2 e^(-s)/(4s+1");
+      await page.keyboard.press("Tab");
+      await page.locator('input[aria-invalid="true"]').waitFor();
+      assert.equal(await field(page, "Inner plant, from the valve to y2").getAttribute("aria-invalid"), "true");
+      await field(page, "Inner plant, from the valve to y2").fill("2 e^(-s)/(4s+1)");
+      await page.keyboard.press("Tab");
+      await page.getByText("These results belong").waitFor({ state: "hidden" });
+      // Today's settings are judged next to them.
+      await page.getByText("Today's settings").click();
+      await field(page, "Inner controller today").fill("Kp 0.3, Ti 4");
+      await field(page, "Outer controller today").fill("Kp 0.5, Ti 30");
+      const today = answered(page, "cascade", ({ baseline }) => baseline?.outer);
+      await page.keyboard.press("Tab");
+      const { baseline } = await (await today).json();
+      await page.getByRole("columnheader", { name: "today" }).waitFor();
+      assert.ok((await figure(page, "Ms, outer loop").innerText()).includes(three(baseline.robustness.Ms_outer)));
+    },
+    ["422"],
+  );
+});
+
+test("structures keep what was typed; Back returns; a late answer of another structure is not shown", async () => {
+  await withPage("#/structure/predictor", {}, async (page) => {
+    await verdict(page).waitFor();
+    await field(page, "Ms").fill("1.5");
+    await page.keyboard.press("Enter");
+    await page.waitForURL(/Ms=1\.5/);
+    let go;
+    const gate = new Promise((open) => (go = open));
+    await page.route("**/v1/interaction", async (route) => {
+      await gate;
+      await route.continue().catch(() => undefined);
+    });
+    await page.getByRole("tab", { name: "Interaction" }).click();
+    await page.getByText("Designing...").waitFor();
+    await page.getByRole("tab", { name: "Level" }).click();
+    await page.locator('.verdict h2[data-code="near-lowest-rate"]').waitFor();
+    go();
+    await page.getByRole("tab", { name: "Predictor" }).click();
+    await page.waitForURL(/predictor\?.*Ms=1\.5/);
+    assert.equal(await field(page, "Ms").inputValue(), "1.5");
+    await page.goBack();
+    await page.getByRole("tab", { name: "Level", selected: true }).waitFor();
+  });
+});
+
+test("three loops: the matrix has a plant for each pair, and the pairing is a choice", async () => {
+  await withPage(
+    "#/structure/interaction",
+    {},
+    async (page) => {
+    await verdict(page).waitFor();
+    assert.match(await page.locator(".structure-tables").innerText(), /Niederlinski index/);
+    const crossed = answered(page, "interaction", ({ pairing }) => pairing?.[0] === 2);
+    await field(page, "Pairing").selectOption("2 1");
+    // No design keeps the limit with that pairing: the service says so at the limit.
+    assert.equal((await crossed).status(), 422);
+    assert.equal(await field(page, "Peak mu of all loops").getAttribute("aria-invalid"), "true");
+    await field(page, "Loops").selectOption("3");
+    assert.equal(await page.locator(".block.matrix input").count(), 9);
+    assert.equal(await field(page, "y1 from u1").inputValue(), "12.8 e^(-s)/(16.7s+1)");
+    assert.equal(await page.locator('.block.matrix input[aria-invalid="true"]').count(), 5);
+    },
+    ["422"],
+  );
+});
+
+test("a job opens with its answer and without another design, and a change makes it a question of its own", async () => {
+  const plant = { type: "fopdt", K: 5.6, T: 40.2, L: 93.9 };
+  const { id, result } = await post("v1/jobs", { structure: "predictor", name: "pipe", plant, Ms: 1.5 });
+  await withPage("#/jobs", {}, async (page) => {
+    let designs = 0;
+    page.on("request", (request) => (designs += request.url().endsWith("/v1/predictor") ? 1 : 0));
+    await page.getByRole("link", { name: "pipe", exact: true }).click();
+    await page.waitForURL(new RegExp(`#/jobs/${id}/structure$`));
+    await page.locator(`.verdict h2[data-code="${result.verdict[0].code}"]`).waitFor();
+    assert.match(await field(page, "Plant, from u to y").inputValue(), /5\.6 e\^\(-93\.9 s\)\/\(40\.2 s \+ 1\)/);
+    assert.ok((await figure(page, "Dead time may rise by (s)").innerText()).includes(three(result.robustness.dead_time_up)));
+    assert.equal(designs, 0);
+    await field(page, "Ms").fill("1.6");
+    await page.keyboard.press("Enter");
+    await page.waitForURL(/#\/structure\/predictor\?.*Ms=1\.6/);
+  });
+});
+
+test("report and code of every structure: the question is posted once, as a job", async () => {
+  for (const [id] of EXAMPLES)
+    await withPage(`#/structure/${id}`, {}, async (page) => {
+      await verdict(page).waitFor();
+      let jobs = 0;
+      page.on("request", (request) => (jobs += request.method() === "POST" && request.url().endsWith("/v1/jobs") ? 1 : 0));
+      const [report] = await Promise.all([page.waitForEvent("popup"), page.getByRole("button", { name: "Report", exact: true }).click()]);
+      await report.getByRole("heading", { name: "Verdict" }).waitFor();
+      assert.match(report.url(), /\/v1\/jobs\/[^/]+\/report\.html/);
+      await report.close();
+      await page.getByRole("button", { name: "Code", exact: true }).click();
+      const text = page.getByRole("region", { name: "Source text" });
+      await text.getByText(/FUNCTION_BLOCK/).first().waitFor();
+      for (const [language, word] of [["C", /#include/], ["Python", /def |class /]]) {
+        await page.getByRole("tab", { name: language, exact: true }).click();
+        await text.getByText(word).first().waitFor();
+      }
+      assert.equal(jobs, 1, id);
+      assert.deepEqual(await accessibilityViolations(page), [], id);
+    });
+});
+
+test("the settings of every controller are typed into the user's product", async () => {
+  await withPage("#/structure/cascade", {}, async (page) => {
+    await verdict(page).waitFor();
+    const asked = answered(page, "cascade", ({ implement }) => implement);
+    await page.getByRole("combobox", { name: "Maker and product" }).fill("simple-pid");
+    await page.getByRole("listbox", { name: "Maker and product" }).getByRole("option").first().waitFor();
+    await page.keyboard.press("Enter");
+    const { settings } = await (await asked).json();
+    assert.deepEqual(settings.map(({ loop }) => loop), ["inner", "outer"]);
+    await page.getByRole("heading", { name: "inner loop" }).waitFor();
+    const shown = await page.getByRole("region", { name: "My controller" }).innerText();
+    for (const { typing } of settings) assert.ok(shown.includes(typing.as_typed.Ki), shown);
+  });
+});
+
+for (const [name, options] of WINDOWS)
+  test(`every structure fits the window and has no accessibility violations: ${name}`, async () => {
+    await withPage("#/structure", options, async (page) => {
+      for (const [id, title] of EXAMPLES) {
+        await page.getByRole("link", { name: title, exact: true }).click();
+        await page.getByRole("tab", { name: new RegExp(id, "i"), selected: true }).waitFor();
+        await verdict(page).waitFor();
+        assert.ok((await overflow(page)) <= 0, `${id} is wider than the window`);
+        assert.deepEqual(await accessibilityViolations(page), [], id);
+      }
+    });
+  });

@@ -21,7 +21,7 @@ namespace tunewright::structure {
 namespace {
 
 constexpr int kCalls = 2000;
-constexpr double kTs = 0.5;
+constexpr double kCallTime = 0.5;
 
 std::string quoted(const std::string& text) {
     std::string out = "\"";
@@ -90,17 +90,17 @@ Expected<code::Program> predictor(const PredictorModel& model, PredictorKind kin
         model.integrating ? transfer({model.K}, {1, 0}, model.L) : first_order(model.K, model.T, model.L);
     const auto design = design_predictor(model, plant, {.kind = kind, .Ms = Ms}, {});
     if (!design) return design.error();
-    return predictor_program(design->controller, kTs, {.u_min = 0, .u_max = 60, .bias = 20, .y0 = 30});
+    return predictor_program(design->controller, kCallTime, {.u_min = 0, .u_max = 60, .bias = 20, .y0 = 30});
 }
 
 TEST(ProgramTexts, EveryLanguageComputesWhatTheInterpreterDoes) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("tunewright-structures-" + std::to_string(std::random_device()()));
     std::filesystem::create_directories(folder);
-    const SampledPid PI{.gains = to_parallel(pi(0.8, 6)), .Ts = kTs};
+    const SampledPid PI{.gains = to_parallel(pi(0.8, 6)), .Ts = kCallTime};
     SampledPid PID{.gains = to_parallel(IdealPid{
                        .Kp = 1.1, .Ti = 15, .Td = 3, .b = 0.7, .filter = {FilterType::measurement_second_order, 0.8}}),
-                   .Ts = kTs};
+                   .Ts = kCallTime};
     const code::CodeOptions narrow{.u_min = 0, .u_max = 60, .rate_limit = 20, .bias = 30};
     const code::CodeOptions clamping{.anti_windup = code::AntiWindup::clamping, .u_min = 5, .u_max = 55, .bias = 25};
     const Feedforward late{.Kf = 0.6, .Tz = 3, .Tp = 1, .Lf = 1.2};
@@ -108,7 +108,7 @@ TEST(ProgramTexts, EveryLanguageComputesWhatTheInterpreterDoes) {
     write(folder, "cascade", cascade_program(PI, PID, narrow, {.u_min = 0, .u_max = 50, .bias = 20, .y0 = 30}));
     write(folder, "cascade_clamping", cascade_program(PI, PI, clamping, clamping));
     write(folder, "feedforward", feedforward_program(PID, late, narrow, 20));
-    write(folder, "level", level_program({.gains = {.Kp = -0.8, .Ki = -0.05}, .Ts = kTs}, narrow, 4, 0.2));
+    write(folder, "level", level_program({.gains = {.Kp = -0.8, .Ki = -0.05}, .Ts = kCallTime}, narrow, 4, 0.2));
     write(folder, "loops", interaction_program({PI, PID}, {narrow, clamping}));
     write(folder, "loops_decoupled",
           interaction_program({PI, PID, PI}, {narrow, clamping, narrow},

@@ -1,7 +1,6 @@
 #include "api/code/code.h"
 
 #include "api/code/parameters.h"
-#include "api/code/printed.h"
 #include "api/code/provenance.h"
 #include "api/code/structure_program.h"
 #include "api/contract/controller.h"

@@ -7,8 +7,8 @@
 
 #include "api/chosen_entry.h"
 #include "api/code/code.h"
-#include "api/contract/code_question.h"
 #include "api/contract/controller.h"
+#include "api/contract/device/code_question.h"
 #include "api/describe/description.h"
 #include "engine/code/algorithm.h"
 #include "engine/code/print.h"

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "api/code/parameters.h"
-#include "api/code/printed.h"
 #include "api/code/provenance.h"
 #include "engine/code/settings.h"
 #include "engine/structure/program/loop_programs.h"

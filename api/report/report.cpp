@@ -7,7 +7,7 @@
 #include "api/report/check_words.h"
 #include "api/report/figures.h"
 #include "api/report/sections.h"
-#include "api/report/structure_words.h"
+#include "api/report/structure/structure_words.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {

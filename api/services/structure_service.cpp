@@ -10,7 +10,7 @@
 #include "api/describe/body.h"
 #include "api/services/structure_records.h"
 #include "api/services/structure_sampled.h"
-#include "engine/structure/drawing.h"
+#include "engine/structure/drawing/drawing.h"
 
 namespace tunewright::api {
 namespace {

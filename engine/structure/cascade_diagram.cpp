@@ -1,5 +1,5 @@
 #include "engine/structure/cascade_diagram.h"
-#include "engine/structure/view.h"
+#include "engine/structure/drawing/view.h"
 
 #include <memory>
 #include <utility>

@@ -9,8 +9,8 @@
 #include "engine/blocks/diagram_response.h"
 #include "engine/blocks/diagram_stability.h"
 #include "engine/numerics/optimise/direct_search.h"
+#include "engine/structure/drawing/view.h"
 #include "engine/structure/loop_design.h"
-#include "engine/structure/view.h"
 
 namespace tunewright::structure {
 namespace {

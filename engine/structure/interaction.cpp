@@ -15,13 +15,13 @@
 #include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
 #include "engine/numerics/optimise/line_search.h"
+#include "engine/structure/drawing/view.h"
 #include "engine/structure/interaction_gains.h"
 #include "engine/structure/limited_search.h"
 #include "engine/structure/local_peaks.h"
 #include "engine/structure/loop_design.h"
 #include "engine/structure/step_figures.h"
 #include "engine/structure/structured_peak.h"
-#include "engine/structure/view.h"
 #include "engine/tuning/limits.h"
 
 namespace tunewright::structure {

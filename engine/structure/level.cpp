@@ -10,7 +10,7 @@
 #include "engine/loop/loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/number_text.h"
-#include "engine/structure/view.h"
+#include "engine/structure/drawing/view.h"
 
 namespace tunewright::structure {
 namespace {

@@ -13,9 +13,9 @@
 #include "engine/loop/peaks.h"
 #include "engine/number_text.h"
 #include "engine/numerics/optimise/line_search.h"
+#include "engine/structure/drawing/view.h"
 #include "engine/structure/local_peaks.h"
 #include "engine/structure/loop_design.h"
-#include "engine/structure/view.h"
 
 namespace tunewright::structure {
 namespace {

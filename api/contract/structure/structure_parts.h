@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "api/contract/code_question.h"
+#include "api/contract/device/code_question.h"
 #include "api/contract/device/device.h"
 #include "api/contract/request.h"
 #include "api/contract/result/identified_model.h"
 #include "engine/structure/conclusions.h"
-#include "engine/structure/drawing.h"
+#include "engine/structure/drawing/drawing.h"
 #include "engine/structure/loop_design.h"
 #include "engine/structure/program/sampled_structure.h"
 #include "engine/structure/step_figures.h"

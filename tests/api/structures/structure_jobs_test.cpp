@@ -9,7 +9,7 @@
 
 #include "api/code/code.h"
 #include "api/report/report.h"
-#include "api/report/structure_words.h"
+#include "api/report/structure/structure_words.h"
 #include "api/report/terminal.h"
 #include "api/service.h"
 #include "api/services/structure_service.h"

@@ -1566,13 +1566,15 @@ export type components = {
       units?: components["schemas"]["Units"];
       evaluate?: components["schemas"]["StructureEvaluate"];
       implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      sampled?: components["schemas"]["StructureSampled"];
       timeout_s?: number;
       priority?: "normal" | "low";
       not_before?: string;
       unique?: boolean;
       notify?: components["schemas"]["Notify"];
-      inner: components["schemas"]["CascadeLoop"];
-      outer: components["schemas"]["CascadeLoop"];
+      inner?: components["schemas"]["CascadeLoop"];
+      outer?: components["schemas"]["CascadeLoop"];
+      record?: components["schemas"]["Record"];
       arrangement?: "series" | "parallel";
       limits?: components["schemas"]["CascadeLimits"];
       search?: "sequential" | "joint";
@@ -1583,8 +1585,31 @@ export type components = {
     StructureEvaluate: {
       points?: number;
     };
+    StructureSampled: {
+      sample_time?: number;
+      integral?: "backward" | "forward" | "trapezoidal";
+      derivative?: "difference" | "filtered_backward" | "filtered_forward" | "filtered_trapezoidal" | "slope" | "four_points";
+      slope_samples?: number;
+      form?: "position" | "velocity";
+      anti_windup?: "back_calculation" | "clamping";
+      tracking_time?: number;
+      u_min?: number;
+      u_max?: number;
+      rate_limit?: number;
+      bias?: number;
+      y0?: number;
+      r2_min?: number;
+      r2_max?: number;
+      r2_bias?: number;
+      d0?: number;
+      compensator?: "static" | "inverse" | "guzman_hagglund" | "optimum" | "given";
+      steps?: {
+        [key: string]: number | null;
+      };
+    };
     CascadeLoop: {
-      plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      plant?: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      record?: components["schemas"]["Record"];
       tune?: components["schemas"]["LoopDesign"];
       controller?: components["schemas"]["Controller"];
     };
@@ -1649,6 +1674,8 @@ export type components = {
       baseline?: components["schemas"]["CascadeBaseline"];
       partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      identified?: components["schemas"]["StructureModel"][];
+      sampled?: components["schemas"]["StructureSampledAnswer"];
       settings?: components["schemas"]["StructureTyping"][];
       responses: {
         of: string;
@@ -1715,6 +1742,30 @@ export type components = {
         [key: string]: number | null;
       };
     };
+    StructureModel: {
+      name: string;
+      model: components["schemas"]["Model"];
+    };
+    StructureSampledAnswer: {
+      sample_time: number;
+      Ms: {
+        why_null?: {
+          [key: string]: string;
+        };
+      } & {
+        [key: string]: number | null;
+      };
+      responses: {
+        input: string;
+        figures: components["schemas"]["StructureStep"][];
+        largest_rate: number;
+        t: number[];
+        signals: {
+          name: string;
+          values: number[];
+        }[];
+      }[];
+    };
     StructureTyping: {
       loop: string;
       typing: components["schemas"]["SettingsAnswer"] | null;
@@ -1726,6 +1777,7 @@ export type components = {
       units?: components["schemas"]["Units"];
       evaluate?: components["schemas"]["StructureEvaluate"];
       implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      sampled?: components["schemas"]["StructureSampled"];
       timeout_s?: number;
       priority?: "normal" | "low";
       not_before?: string;
@@ -1762,6 +1814,8 @@ export type components = {
       frontier: components["schemas"]["LevelDesign"][];
       partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      identified?: components["schemas"]["StructureModel"][];
+      sampled?: components["schemas"]["StructureSampledAnswer"];
       settings?: components["schemas"]["StructureTyping"][];
       responses: {
         of: string;
@@ -1800,13 +1854,15 @@ export type components = {
       units?: components["schemas"]["Units"];
       evaluate?: components["schemas"]["StructureEvaluate"];
       implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      sampled?: components["schemas"]["StructureSampled"];
       timeout_s?: number;
       priority?: "normal" | "low";
       not_before?: string;
       unique?: boolean;
       notify?: components["schemas"]["Notify"];
-      plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
-      disturbance: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      plant?: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      disturbance?: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      record?: components["schemas"]["Record"];
       feedback: components["schemas"]["Controller"] | {
         tune: components["schemas"]["LoopDesign"];
       };
@@ -1831,6 +1887,8 @@ export type components = {
       peak_bound: number;
       partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      identified?: components["schemas"]["StructureModel"][];
+      sampled?: components["schemas"]["StructureSampledAnswer"];
       settings?: components["schemas"]["StructureTyping"][];
       responses: {
         of: string;
@@ -1878,12 +1936,14 @@ export type components = {
       units?: components["schemas"]["Units"];
       evaluate?: components["schemas"]["StructureEvaluate"];
       implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      sampled?: components["schemas"]["StructureSampled"];
       timeout_s?: number;
       priority?: "normal" | "low";
       not_before?: string;
       unique?: boolean;
       notify?: components["schemas"]["Notify"];
-      plant: (components["schemas"]["Plant"] | components["schemas"]["TypedPlant"] | null | 0)[][];
+      plant?: (components["schemas"]["Plant"] | components["schemas"]["TypedPlant"] | null | 0)[][];
+      records?: components["schemas"]["Record"][];
       pairing?: number[] | null;
       controllers?: ("PI" | "PID") | components["schemas"]["Controller"][];
       limit?: components["schemas"]["InteractionLimit"];
@@ -1921,6 +1981,8 @@ export type components = {
       compared: components["schemas"]["ComparedControllers"][];
       partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      identified?: components["schemas"]["StructureModel"][];
+      sampled?: components["schemas"]["StructureSampledAnswer"];
       settings?: components["schemas"]["StructureTyping"][];
       responses: {
         of: string;
@@ -1976,6 +2038,7 @@ export type components = {
       units?: components["schemas"]["Units"];
       evaluate?: components["schemas"]["StructureEvaluate"];
       implement?: components["schemas"]["Implement"] | components["schemas"]["Implement"][];
+      sampled?: components["schemas"]["StructureSampled"];
       timeout_s?: number;
       priority?: "normal" | "low";
       not_before?: string;
@@ -2014,6 +2077,8 @@ export type components = {
       pid_IAE: number | null;
       partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
+      identified?: components["schemas"]["StructureModel"][];
+      sampled?: components["schemas"]["StructureSampledAnswer"];
       settings?: components["schemas"]["StructureTyping"][];
       responses: {
         of: string;
@@ -2454,6 +2519,7 @@ export type RangeRun = components['schemas']['RangeRun'];
 export type RangeNonlinearRun = components['schemas']['RangeNonlinearRun'];
 export type CascadeRequest = components['schemas']['CascadeRequest'];
 export type StructureEvaluate = components['schemas']['StructureEvaluate'];
+export type StructureSampled = components['schemas']['StructureSampled'];
 export type CascadeLoop = components['schemas']['CascadeLoop'];
 export type LoopDesign = components['schemas']['LoopDesign'];
 export type CascadeLimits = components['schemas']['CascadeLimits'];
@@ -2464,6 +2530,8 @@ export type StructureStep = components['schemas']['StructureStep'];
 export type SingleLoop = components['schemas']['SingleLoop'];
 export type CascadeBaseline = components['schemas']['CascadeBaseline'];
 export type Conclusion = components['schemas']['Conclusion'];
+export type StructureModel = components['schemas']['StructureModel'];
+export type StructureSampledAnswer = components['schemas']['StructureSampledAnswer'];
 export type StructureTyping = components['schemas']['StructureTyping'];
 export type LevelRequest = components['schemas']['LevelRequest'];
 export type FlowLoop = components['schemas']['FlowLoop'];

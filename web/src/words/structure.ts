@@ -45,8 +45,8 @@ export interface StructureFinding {
 
 /** A code that is newer than the page is shown as it is. */
 export function conclusionWords({ code, figures }: Conclusion, units: UnitNames): StructureFinding {
-  const [level, sentence] = SENTENCES[code] ?? (["note", `${code.replaceAll("-", " ")}.`] as const);
-  const text = sentence.replace(/\{( ?)(\w+)(%?)\}/g, (_, blank: string, name: string, percent: string) => {
+  const [level, template] = SENTENCES[code] ?? (["note", `${code.replaceAll("-", " ")}.`] as const);
+  const text = template.replace(/\{( ?)(\w+)(%?)\}/g, (_, blank: string, name: string, percent: string) => {
     if (blank) return units[name as keyof UnitNames] && ` ${units[name as keyof UnitNames]}`;
     return percent ? formatShare(figures[name] ?? NaN) : formatNumber(figures[name]);
   });

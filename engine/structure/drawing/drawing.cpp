@@ -1,4 +1,4 @@
-#include "engine/structure/drawing.h"
+#include "engine/structure/drawing/drawing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 #include "engine/blocks/diagram_loop.h"
 #include "engine/blocks/diagram_response.h"
+#include "engine/structure/drawing/view.h"
 #include "engine/structure/local_peaks.h"
-#include "engine/structure/view.h"
 
 namespace tunewright::structure {
 namespace {

@@ -1,4 +1,4 @@
-#include "api/report/structure_words.h"
+#include "api/report/structure/structure_words.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "api/contract/code_question.h"
+#include "api/contract/device/code_question.h"
 
 namespace tunewright::api {
 namespace {

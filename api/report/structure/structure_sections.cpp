@@ -1,11 +1,12 @@
 // The report of loops around the loop: conclusions, settings, figures, responses and peaks.
+#include <algorithm>
 #include <array>
 #include <utility>
 
 #include "api/report/figures.h"
 #include "api/report/plot.h"
 #include "api/report/sections.h"
-#include "api/report/structure_words.h"
+#include "api/report/structure/structure_words.h"
 
 namespace tunewright::api {
 namespace {

@@ -24,7 +24,7 @@ constexpr double kOfRate = 0.1;        // first step times the fastest rate
 constexpr int kEchoes = 4, kEchoesOfMany = 3, kEchoesAtLowAccuracy = 2;
 constexpr std::size_t kMany = 4;  // delayed signals
 constexpr double kLowAccuracy = 1e-5;
-constexpr double kNearZero = 1e-5;    // frequency, of 1/time_scale, from which the values at 0 are extrapolated
+constexpr double kNearZero = 4e-5;    // frequency, of 1/time_scale, from which the values at 0 are extrapolated
 constexpr double kNoError = 1e-9;     // of the step: the error's final value
 constexpr int kIterations = 12;       // of a step that is longer than a dead time
 constexpr double kConverged = 1e-10;  // of the largest value
@@ -103,16 +103,17 @@ private:
         return system.N.size() > 0 ? std::min(0.99, system.N.cwiseAbs().maxCoeff()) : 0;
     }
 
-    /// The signals' transforms times s at s = 0 and their slope there, from the parabola through h, 2 h and 3 h.
+    /// The signals' transforms times s at s = 0 and their slope there, from the cubic through h to 4 h.
     void set_final(const BlockDiagram& diagram) {
         const double h = kNearZero / diagram.time_scale();
-        std::array<VectorXd, 3> at;
+        std::array<VectorXd, 4> at;
         for (std::size_t i = 0; i < at.size(); ++i) {
             at[i] = VectorXd::Zero(system_.signals());
             for (Index k = 0; k < w_.size(); ++k)
                 if (w_[k] != 0) at[i] += w_[k] * diagram.response(double(i + 1) * h, int(k)).real();
         }
-        const VectorXd value = 3 * at[0] - 3 * at[1] + at[2], slope = (-2.5 * at[0] + 4 * at[1] - 1.5 * at[2]) / h;
+        const VectorXd value = 4 * at[0] - 6 * at[1] + 4 * at[2] - at[3],
+                       slope = (-26 * at[0] + 57 * at[1] - 42 * at[2] + 11 * at[3]) / (6 * h);
         out_.final_.assign(value.data(), value.data() + value.size());
         out_.slope_.assign(slope.data(), slope.data() + slope.size());
     }

@@ -23,6 +23,8 @@ constexpr double kFirstStep = 1.05, kMostGrowth = 1.5, kClosest = 1e-12;  // rat
 constexpr double kTurnOfDeadTime = 0.5;  // rad of all dead times together in one step, while the loops have gain
 constexpr double kSmallGain = 0.25;      // spectral radius of |M|: below it the rest of the axis turns g no further
 constexpr double kBetweenLooks = 1.5;    // ratio of the frequencies at which that radius is computed
+constexpr double kBetweenTurns = 1.1;    // the same for the dead times that turn g
+constexpr double kLittle = 0.05;         // share of g that a block contributes: its dead time turns nothing
 constexpr double kNeutral = 1;           // the same of the direct terms
 constexpr double kMostFrequency = 1e9;   // of the reference frequency
 constexpr int kMostNewton = 40;
@@ -48,6 +50,16 @@ public:
     Complex start(double omega) const { return at(Complex(right_of_ + omega)); }
     bool gain_is_small(double omega) const {
         return spectral_radius(diagram_.connections({right_of_, omega}).cwiseAbs()) < kSmallGain;
+    }
+    /// The dead times that turn g: a block of gain M from j to i contributes the share M H_ji. That of a slow outer
+    /// loop is negligible over most of the frequencies of a fast inner one.
+    double turning_dead_time(double omega) const {
+        const Complex s(right_of_, omega);
+        double sum = 0;
+        for (const Block& block : diagram_.blocks())
+            if (const double L = block.plant.dead_time(); L > 0)
+                if (std::abs(block.plant.at(s) * diagram_.response(s, block.to)[block.from]) > kLittle) sum += L;
+        return sum;
     }
     /// From a frequency with a small gain to infinity: no factor turns by more than half a turn there.
     double rest_of_turn(double omega) const {
@@ -96,7 +108,7 @@ StabilityCount count_unstable_poles(const BlockDiagram& diagram, double right_of
     const auto system = make_system(diagram);
     if (!system || is_neutral_and_unstable(*system)) return {.unstable_poles = -1};
     const Curve g(diagram, right_of);
-    const double reference = g.reference(), dead_time = diagram.total_dead_time();
+    const double reference = g.reference();
     if (!std::isfinite(reference)) return {};
     // At 0 itself integrators are infinite; the curve begins there on the real axis.
     double omega = kLowest * reference, next = kFirstStep * omega, ratio = kFirstStep;
@@ -105,7 +117,7 @@ StabilityCount count_unstable_poles(const BlockDiagram& diagram, double right_of
     if (!Winding::is_short(start, here)) return {.on_the_boundary = true};
     Winding winding(start);
     winding.follow(here);
-    double looked_at = reference;
+    double looked_at = reference, turned_at = omega, dead_time = diagram.total_dead_time();
     for (bool small = false; !small;) {
         const Complex there = g.at(next);
         if (!follow(g, winding, omega, here, next, there)) return {.on_the_boundary = true};
@@ -113,6 +125,10 @@ StabilityCount count_unstable_poles(const BlockDiagram& diagram, double right_of
         here = there;
         ratio = std::min(kMostGrowth, ratio * kFirstStep);
         next = omega * ratio;
+        if (omega > kBetweenTurns * turned_at) {
+            dead_time = g.turning_dead_time(omega);
+            turned_at = omega;
+        }
         if (dead_time > 0) next = std::min(next, omega + kTurnOfDeadTime / dead_time);
         if (omega > looked_at) {
             small = g.gain_is_small(omega);

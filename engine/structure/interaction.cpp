@@ -256,8 +256,7 @@ public:
             const auto gains = parallel(settings_.at(x));
             return local_peaks(
                 responses_.grid(),
-                [&, value = StructuredValues(design_.mu * std::exp(kLeastPeak))](double omega,
-                                                                                 std::vector<double>& excess) mutable {
+                [&, value = StructuredValues()](double omega, std::vector<double>& excess) mutable {
                     excess = {std::log(value(sensitivity(responses_, gains, omega)) / design_.mu)};
                 },
                 kLeastPeak);

@@ -1,11 +1,9 @@
 #include "engine/structure/structured_peak.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <utility>
 
 namespace tunewright::structure {
 namespace {
@@ -23,40 +21,6 @@ constexpr double kConverged = 1e-12;  // of ln of the value: the decrease that t
 constexpr double kShortest = 1e-6;    // of a step
 constexpr double kEnough = 1e-4;      // of the promised decrease
 constexpr int kSweeps = 3;
-constexpr double kApart = 1e-5;  // relative distance of two values whose vectors are told apart by the rows
-
-struct Largest {
-    double value = 0;
-    ComplexVector vector;  // of length 1
-};
-
-/// Of a Hermitian matrix of three rows: the cubic's root by cosines (Smith 1961, Communications of the ACM 4, 168).
-double largest_eigenvalue(const SmallMatrix& B) {
-    const double mean = B.diagonal().real().sum() / 3;
-    const double off = std::norm(B(0, 1)) + std::norm(B(0, 2)) + std::norm(B(1, 2));
-    const double spread = (B.diagonal().real().array() - mean).square().sum() + 2 * off;
-    if (!(spread > 1e-30 * mean * mean)) return mean;
-    const double p = std::sqrt(spread / 6);
-    const Eigen::Matrix3cd C = (B - mean * SmallMatrix::Identity(3, 3)) / p;
-    return mean + 2 * p * std::cos(std::acos(std::clamp(0.5 * C.determinant().real(), -1.0, 1.0)) / 3);
-}
-
-/// The same with its vector, which is orthogonal to the rows of B - value; by iteration where two values are close.
-Largest largest_of(const SmallMatrix& B) {
-    if (B.rows() == 3) {
-        const double value = largest_eigenvalue(B);
-        const Eigen::Matrix3cd M = B - value * SmallMatrix::Identity(3, 3);
-        Eigen::Vector3cd best = Eigen::Vector3cd::Zero();
-        for (const auto& [i, k] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
-            const Eigen::RowVector3cd a = M.row(i), b = M.row(k);
-            const Eigen::Vector3cd v(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
-            if (v.squaredNorm() > best.squaredNorm()) best = v;
-        }
-        if (best.norm() > kApart * value * value) return {value, best.normalized()};
-    }
-    const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(B);
-    return {solver.eigenvalues()(B.rows() - 1), solver.eigenvectors().col(B.rows() - 1)};
-}
 
 SmallMatrix scaled(const Matrix& S, const Vector& d) {
     const Vector scale = d.array().exp();
@@ -66,10 +30,11 @@ SmallMatrix scaled(const Matrix& S, const Vector& d) {
 /// ln of the largest singular value of D S D^-1, D = exp(diag(d)), and its gradient over d.
 double log_value(const Matrix& S, const Vector& d, Vector& gradient) {
     const SmallMatrix A = scaled(S, d);
-    const Largest largest = largest_of(A.adjoint() * A);
-    const double square = std::max(largest.value, 1e-300);
-    const ComplexVector u = A * largest.vector / std::sqrt(square);
-    gradient = u.cwiseAbs2() - largest.vector.cwiseAbs2();
+    const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(A.adjoint() * A);
+    const Index last = A.rows() - 1;
+    const double square = std::max(solver.eigenvalues()(last), 1e-300);
+    const ComplexVector v = solver.eigenvectors().col(last), u = A * v / std::sqrt(square);
+    gradient = u.cwiseAbs2() - v.cwiseAbs2();
     return 0.5 * std::log(square);
 }
 
@@ -131,11 +96,6 @@ double structured_value(const Matrix& S) { return StructuredValues()(S); }
 double StructuredValues::operator()(const Matrix& S) {
     if (S.rows() == 1) return std::abs(S(0, 0));
     if (S.rows() == 2) return of_two(S);
-    if (enough_below_ > 0 && log_D_.size() == 3) {
-        const SmallMatrix A = scaled(S, log_D_);
-        const double bound = std::sqrt(std::max(0.0, largest_eigenvalue(A.adjoint() * A)));
-        if (bound < enough_below_) return bound;
-    }
     return of_more(S, log_D_);
 }
 

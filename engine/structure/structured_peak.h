@@ -9,15 +9,12 @@ namespace tunewright::structure {
 /// which is exact for up to three blocks (Packard and Doyle 1993, Automatica 29, 71-109). For two rows in closed form.
 double structured_value(const Eigen::Ref<const Eigen::MatrixXcd>& S);
 
-/// Values of matrices that change little from one to the next: begins with the last D. Below `enough_below` an upper
-/// bound is enough.
+/// Values of matrices that change little from one to the next: begins with the last D.
 class StructuredValues {
 public:
-    explicit StructuredValues(double enough_below = 0) : enough_below_(enough_below) {}
     double operator()(const Eigen::Ref<const Eigen::MatrixXcd>& S);
 
 private:
-    double enough_below_;
     Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> log_D_;
 };
 

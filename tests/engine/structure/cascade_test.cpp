@@ -48,13 +48,13 @@ TEST(Cascade, IntegralErrorsFollowFromTheSettingsAlone) {
     const CascadePlants plants{first_order(0.8, 5, 2), first_order(1.2, 60, 20)};
     const auto both = judge_cascade(plants, {pi(1.1, 6), pi(0.9, 70)});
     ASSERT_TRUE(both && both->stable);
-    EXPECT_NEAR(both->outer_load.IE, -70 / 0.9, 1e-7 * both->outer_load.IAE);
-    EXPECT_NEAR(both->inner_load.IE, 0, 1e-7 * both->inner_load.IAE);
+    EXPECT_NEAR(both->outer_load.IE, -70 / 0.9, 1e-9 * both->outer_load.IAE);
+    EXPECT_NEAR(both->inner_load.IE, 0, 1e-9 * both->inner_load.IAE);
 
     const auto proportional = judge_cascade(plants, {{.Kp = 1.4}, pi(0.9, 70)});
     ASSERT_TRUE(proportional && proportional->stable);
-    EXPECT_NEAR(proportional->outer_load.IE, -70 / 0.9 * (1 + 1 / (1.4 * 0.8)), 1e-7 * proportional->outer_load.IAE);
-    EXPECT_NEAR(proportional->inner_load.IE, -70 / (0.9 * 1.4), 1e-7 * proportional->inner_load.IAE);
+    EXPECT_NEAR(proportional->outer_load.IE, -70 / 0.9 * (1 + 1 / (1.4 * 0.8)), 1e-9 * proportional->outer_load.IAE);
+    EXPECT_NEAR(proportional->inner_load.IE, -70 / (0.9 * 1.4), 1e-9 * proportional->inner_load.IAE);
 }
 
 TEST(Cascade, AstromAndHagglundsExampleHasItsExactIntegral) {
@@ -62,7 +62,7 @@ TEST(Cascade, AstromAndHagglundsExampleHasItsExactIntegral) {
     const CascadePlants plants{transfer({1}, {1, 1}), transfer({1}, {1, 3, 3, 1})};
     const auto figures = judge_cascade(plants, {{.Kp = 5}, pi(0.55, 1.9)});
     ASSERT_TRUE(figures);
-    EXPECT_NEAR(figures->inner_load.IE, -1.9 / (0.55 * 5), 1e-8);
+    EXPECT_NEAR(figures->inner_load.IE, -1.9 / (0.55 * 5), 1e-9);
     EXPECT_NEAR(figures->Ms_outer, 1.338, 5e-4);
 }
 

@@ -34,6 +34,26 @@ inline PlantMatrix vinante_luyben() {
             {first_order(-2.8, 9.5, 1.8), first_order(4.3, 9.2, 0.35)}};
 }
 
+/// Wardle and Wood, as in Luyben (1986).
+inline PlantMatrix wardle_wood() {
+    return {{first_order(0.126, 60, 6), transfer({-0.101}, {2160, 93, 1}, 12)},
+            {first_order(0.094, 38, 8), first_order(-0.12, 35, 8)}};
+}
+
+/// Ogunnaike and Ray, as in Luyben (1986).
+inline PlantMatrix ogunnaike_ray() {
+    return {{first_order(0.66, 6.7, 2.6), first_order(-0.61, 8.64, 3.5), first_order(-0.0049, 9.06, 1)},
+            {first_order(1.11, 3.25, 6.5), first_order(-2.36, 5, 3), first_order(-0.01, 7.09, 1.2)},
+            {first_order(-34.68, 8.15, 9.2), first_order(46.2, 10.9, 9.4),
+             transfer({10.1007, 0.87}, {73.132, 22.69, 1}, 1)}};
+}
+
+/// A polymerisation reactor, Chien, Huang and Yang (1999).
+inline PlantMatrix polymerisation() {
+    return {{first_order(22.89, 4.572, 0.2), first_order(-11.64, 1.807, 0.4)},
+            {first_order(4.689, 2.174, 0.2), first_order(5.8, 1.801, 0.4)}};
+}
+
 class RandomNumbers {
 public:
     explicit RandomNumbers(unsigned seed) : engine_(seed) {}

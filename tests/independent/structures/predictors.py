@@ -43,7 +43,7 @@ class Loop:
         self.Gm = Transfer(model.K, model.lags, 0.0, integrators=model.integrators)
         self.C, self.F = Rational(answer["controller"]["C"]), Rational(answer["controller"]["F"])
         knobs = [answer[k] for k in ("lambda", "Tf", "beta") if answer.get(k)]
-        self.times = plant.times() + model.times() + knobs
+        self.times = plant.times() + model.times() + [abs(k) for k in knobs]
         self.unstable_model = model.unstable_poles()
         self.integrators = 1 + model.integrators
 

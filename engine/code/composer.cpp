@@ -94,9 +94,9 @@ void Composer::embed(const Program& part, const std::map<std::string, std::strin
         const auto given = names.find(before);
         const bool common = before == "Ts" || before == "at_rest" || before == "restart";
         own.name = given != names.end() ? given->second : common ? before : prefix + before + suffix;
-        const bool private_ = own.role == VariableRole::state || own.role == VariableRole::local;
+        const bool memory = own.role == VariableRole::state || own.role == VariableRole::local;
         if (std::ranges::find(program_.variables, own.name, &Declaration::name) != program_.variables.end() &&
-            (given != names.end() || !private_)) {
+            (given != names.end() || !memory)) {
             variables.emplace(before, (*this)[own.name]);
         } else {
             if (own.role == VariableRole::output) own.role = VariableRole::local;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/code/composer.h"
+#include "engine/loop/sampled/held_plant.h"
 #include "engine/number_text.h"
 
 namespace tunewright::structure {
@@ -86,12 +87,12 @@ void add_to_controller(Composer& whole, const Program& pid, const std::string& s
 /// The output of a compensator whose input has been `seconds` late anyway.
 Expr compensated(Composer& whole, const std::string& s, const Feedforward& part, const Expr& x, const Expr& before,
                  double Ts, double seconds = 0) {
+    const SampledDelay delay = in_samples(std::max(part.Lf - seconds, 0.0), Ts);
     const Expr K = whole.setting("Kf" + s, part.Kf, "gain of the compensator"),
-               out = whole.lead_lag("lead_lag" + s, x, before, K, whole.setting("T_lead" + s, part.Tz, "its lead in s"),
-                                    whole.setting("T_lag" + s, part.Tp, "its lag in s"));
-    const double calls = std::max(part.Lf - seconds, 0.0) / Ts, nearest = std::round(calls);
-    constexpr double kMultiple = 1e-9;  // rounding of a dead time that is a multiple of the sample time
-    return whole.delayed("late" + s, out, K * before, std::abs(calls - nearest) < kMultiple ? nearest : calls);
+               lead = whole.setting("T_lead" + s, part.Tz, "its lead in s"),
+               lag = whole.setting("T_lag" + s, part.Tp, "its lag in s"),
+               late = whole.delayed("late" + s, x, before, delay.whole + delay.rest / Ts);
+    return whole.lead_lag("lead_lag" + s, late, before, K, lead, lag);
 }
 
 std::vector<std::string> notes_on_sum() {

@@ -64,7 +64,7 @@ struct SampledAnswer {
 };
 
 /// `sizes`: of steps by their names, 1 for the others; once a limit is reached responses are not proportional to them.
-/// The program's setting Ts is the sample time. Error: refuse_sampling().
+/// The program's setting Ts is the sample time; its times are in the unit of the plants'. Error: refuse_sampling().
 Expected<SampledAnswer> run_sampled(const code::Program& program, const SampledScene& scene,
                                     const std::map<std::string, double>& sizes, const RunControl& control);
 

@@ -13,13 +13,13 @@
 namespace tunewright::structure {
 namespace {
 
-constexpr double kTs = 0.5;
+constexpr double kPeriod = 0.5;
 
 /// The response at `t` of a first-order part K/(T s + 1), or K/s, to an input that is v[i] from i Ts on.
 double response_to(const std::vector<double>& v, double t, double K, double T, bool integrating) {
     double sum = 0;
     for (std::size_t i = 0; i < v.size(); ++i) {
-        const double begin = static_cast<double>(i) * kTs, step = v[i] - (i > 0 ? v[i - 1] : 0);
+        const double begin = static_cast<double>(i) * kPeriod, step = v[i] - (i > 0 ? v[i - 1] : 0);
         if (t > begin) sum += step * (integrating ? K * (t - begin) : K * (1 - std::exp(-(t - begin) / T)));
     }
     return sum;
@@ -42,7 +42,7 @@ TEST(PredictorProgram, ItIsTheLawWithWholeHistories) {
         const auto design = design_predictor(m, plant, {.kind = c.kind, .Ms = 1.9}, {});
         ASSERT_TRUE(design) << design.error().message;
         const PredictorController& controller = design->controller;
-        const auto program = predictor_program(controller, kTs, {.u_min = 12, .u_max = 31, .bias = 20, .y0 = 30});
+        const auto program = predictor_program(controller, kPeriod, {.u_min = 12, .u_max = 31, .bias = 20, .y0 = 30});
         ASSERT_TRUE(program) << program.error().message;
         code::Interpreter machine(*program);
         const auto pid = predictor_pid(controller);
@@ -55,7 +55,8 @@ TEST(PredictorProgram, ItIsTheLawWithWholeHistories) {
         double integral = 0;
         const int calls = m.T < 0 ? 60 : 400;  // the plain form of an unstable model loses its digits
         for (int k = 0; k < calls; ++k) {
-            const double t = k * kTs, r = k < 100 ? 31 : 27, y = 30 + 1.5 * std::sin(0.11 * t) + 0.2 * std::cos(2 * t);
+            const double t = k * kPeriod, r = k < 100 ? 31 : 27,
+                         y = 30 + 1.5 * std::sin(0.11 * t) + 0.2 * std::cos(2 * t);
             const bool manual = k / 50 % 3 == 1;
             measured.push_back(0);
             const double y_base = 30.2;  // the first y
@@ -63,8 +64,8 @@ TEST(PredictorProgram, ItIsTheLawWithWholeHistories) {
                 [&](const std::vector<double>& x) {  // at t, of a signal that is held and has its last value now
                     double behind = 0;
                     for (std::size_t i = 0; i + 1 < x.size(); ++i)
-                        behind +=
-                            (x[i] - (i > 0 ? x[i - 1] : 0)) * (1 - std::exp(-(t - static_cast<double>(i) * kTs) / lag));
+                        behind += (x[i] - (i > 0 ? x[i - 1] : 0)) *
+                                  (1 - std::exp(-(t - static_cast<double>(i) * kPeriod) / lag));
                     return filtered ? behind + lead / lag * (x.back() - behind) : x.back();
                 };
             // F sees y held; the model behind the dead time is exact where it cannot be held, on integrating and
@@ -90,9 +91,9 @@ TEST(PredictorProgram, ItIsTheLawWithWholeHistories) {
                 u = manual ? 22 : 20;
                 integral = u - P;
             } else {
-                integral += P / Ti * kTs;
+                integral += P / Ti * kPeriod;
                 u = std::clamp(P + integral, 12.0, 31.0);
-                integral += std::min(1.0, kTs / std::abs(Ti)) * (u - P - integral);
+                integral += std::min(1.0, kPeriod / std::abs(Ti)) * (u - P - integral);
             }
             ASSERT_NEAR(machine["u"], u, 1e-7) << "call " << k << " T " << m.T << " kind " << int(c.kind);
             moved.push_back(u - 20);
@@ -105,11 +106,11 @@ TEST(PredictorProgram, WhatCannotBeWrittenIsRefused) {
     controller.model = {.K = 2, .T = -15, .L = 1.7};
     controller.C = {{1, 1}, {1, 0}};
     controller.F = {{1}, {1}};
-    EXPECT_EQ(predictor_program(controller, kTs, {}).error().where, "controller/F");  // F must cancel the pole
+    EXPECT_EQ(predictor_program(controller, kPeriod, {}).error().where, "controller/F");  // F must cancel the pole
     controller.model = {.K = 2, .T = 15, .L = 1.7};
-    EXPECT_TRUE(predictor_program(controller, kTs, {}));
+    EXPECT_TRUE(predictor_program(controller, kPeriod, {}));
     controller.C = {{1, 1}, {1, 2, 1, 0}};
-    EXPECT_EQ(predictor_program(controller, kTs, {}).error().where, "controller/C");
+    EXPECT_EQ(predictor_program(controller, kPeriod, {}).error().where, "controller/C");
     controller.C = {{1, 1}, {1, 0}};
     EXPECT_EQ(predictor_program(controller, 1e-5, {}).error().where, "sample_time");
 }

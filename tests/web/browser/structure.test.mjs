@@ -14,6 +14,18 @@ const EXAMPLES = [
   ["predictor", "Long pipe", { "Set-point step": 4, "Load at the plant input": 4, "Sensitivity |S| of each loop": 2 }],
 ];
 
+/** Luyben's settings, which are judged faster than a design is found. */
+const GIVEN = new URLSearchParams({
+  "plant.0.0": "12.8 e^(-s)/(16.7s+1)",
+  "plant.0.1": "-18.9 e^(-3s)/(21s+1)",
+  "plant.1.0": "6.6 e^(-7s)/(10.9s+1)",
+  "plant.1.1": "-19.4 e^(-3s)/(14.4s+1)",
+  controllers: "given",
+  "controllers.0": "Kp 0.375, Ti 8.29",
+  "controllers.1": "Kp -0.075, Ti 23.6",
+});
+const addressOf = (id) => `#/structure/${id}${id === "interaction" ? `?${GIVEN}` : ""}`;
+
 const verdict = (page) => page.locator(".structure-results .verdict h2");
 /** The next answer of the service about a structure. */
 const answered = (page, id, holds = () => true) =>
@@ -166,6 +178,34 @@ test("structures keep what was typed; Back returns; a late answer of another str
   });
 });
 
+test("a design that takes long can be cancelled, and a change does not wait for it", async () => {
+  await withPage("#/structure/interaction", {}, async (page) => {
+    await verdict(page).waitFor();
+    let letGo;
+    const gate = new Promise((open) => (letGo = open));
+    await page.route("**/v1/interaction", async (route) => {
+      if (route.request().postDataJSON().limit.mu !== 1.7) await gate;
+      await route.continue().catch(() => undefined);
+    });
+    const set = async (mu) => {
+      await field(page, "Peak mu of all loops").fill(mu);
+      await page.keyboard.press("Enter");
+    };
+    const cancel = page.getByRole("button", { name: "Cancel", exact: true });
+    await set("1.6");
+    await cancel.click();
+    await cancel.waitFor({ state: "hidden" });
+    await page.getByText("These results belong to the last answered request").waitFor();
+    await set("1.5");
+    await cancel.waitFor();
+    await page.waitForTimeout(1100);
+    await set("1.7");
+    await page.getByText("reached 1.70").waitFor();
+    await cancel.waitFor({ state: "hidden" });
+    letGo();
+  });
+});
+
 test("three loops: the matrix has a plant for each pair, and the pairing is a choice", async () => {
   await withPage(
     "#/structure/interaction",
@@ -177,6 +217,7 @@ test("three loops: the matrix has a plant for each pair, and the pairing is a ch
     await field(page, "Pairing").selectOption("2 1");
     // No design keeps the limit with that pairing: the service says so at the limit.
     assert.equal((await crossed).status(), 422);
+    await page.locator('.structure-controls input[aria-invalid="true"]').waitFor();
     assert.equal(await field(page, "Peak mu of all loops").getAttribute("aria-invalid"), "true");
     await field(page, "Loops").selectOption("3");
     assert.equal(await page.locator(".block.matrix input").count(), 9);
@@ -184,6 +225,27 @@ test("three loops: the matrix has a plant for each pair, and the pairing is a ch
     assert.equal(await page.locator('.block.matrix input[aria-invalid="true"]').count(), 5);
     },
     ["422"],
+  );
+});
+
+test("a design that takes longer than a call may becomes a job, whose report needs no other", async () => {
+  await withPage(
+    "#/structure/level",
+    {},
+    async (page) => {
+      await verdict(page).waitFor();
+      await page.route("**/v1/predictor", (route) =>
+        route.fulfill({ status: 504, contentType: "application/problem+json", body: JSON.stringify({ type: "timeout", status: 504, detail: "Stopped after 20 s." }) }),
+      );
+      let jobs = 0;
+      page.on("request", (request) => (jobs += request.method() === "POST" && request.url().endsWith("/v1/jobs") ? 1 : 0));
+      await page.getByRole("tab", { name: "Predictor" }).click();
+      await page.locator('.verdict h2[data-code="pid-does-as-well"]').waitFor();
+      const [report] = await Promise.all([page.waitForEvent("popup"), page.getByRole("button", { name: "Report", exact: true }).click()]);
+      await report.getByRole("heading", { name: "Verdict" }).waitFor();
+      assert.equal(jobs, 1);
+    },
+    ["504"],
   );
 });
 
@@ -207,7 +269,7 @@ test("a job opens with its answer and without another design, and a change makes
 
 test("report and code of every structure: the question is posted once, as a job", async () => {
   for (const [id] of EXAMPLES)
-    await withPage(`#/structure/${id}`, {}, async (page) => {
+    await withPage(addressOf(id), {}, async (page) => {
       await verdict(page).waitFor();
       let jobs = 0;
       page.on("request", (request) => (jobs += request.method() === "POST" && request.url().endsWith("/v1/jobs") ? 1 : 0));
@@ -245,8 +307,8 @@ test("the settings of every controller are typed into the user's product", async
 for (const [name, options] of WINDOWS)
   test(`every structure fits the window and has no accessibility violations: ${name}`, async () => {
     await withPage("#/structure", options, async (page) => {
-      for (const [id, title] of EXAMPLES) {
-        await page.getByRole("link", { name: title, exact: true }).click();
+      for (const [id] of EXAMPLES) {
+        await page.evaluate((hash) => (location.hash = hash), addressOf(id));
         await page.getByRole("tab", { name: new RegExp(id, "i"), selected: true }).waitFor();
         await verdict(page).waitFor();
         assert.ok((await overflow(page)) <= 0, `${id} is wider than the window`);

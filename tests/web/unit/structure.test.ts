@@ -53,6 +53,7 @@ test("given controllers, today's settings and members without a field are kept",
     inner: { plant: "2 e^(-s)/(4s+1)", controller: { Kp: 0.65, Ti: 2.8 } },
     outer: { plant: "1.5 e^(-8s)/(30s+1)", controller: { Kp: 0.9, Ti: 18, Td: 4, filter: { type: "measurement_second_order", Tf: 0.4 } } },
     arrangement: "parallel",
+    compare_single: false,
     search: "sequential",
     weights: { d1: 1, d2: 2 },
     baseline: { inner: { Kp: 0.5, Ti: 4 }, outer: { Kp: 0.5, Ti: 30 } },
@@ -89,10 +90,17 @@ test("settings in one line: any separators, a decimal comma, the filter of the m
   assert.deepEqual(parseSettings("Kp 1, Tf 0.2"), { value: { Kp: 1, filter: { type: "measurement_second_order", Tf: 0.2 } } });
   assert.ok("sentence" in parseSettings("Ti 3"));
   assert.ok("sentence" in parseSettings("Kp"));
-  assert.equal(settingsLine({ Kp: 0.6476398, Ti: 2.84489, Td: 0, b: 1, filter: { type: "none" } }), "Kp 0.64764, Ti 2.8449");
-  const given = settingsLine(pid);
-  assert.equal(given, "Kp 0.93488, Ti 18.108, Td 4.3559, Tf 0.43559");
+  assert.equal(settingsLine({ Kp: 0.6476398, Ti: 2.84489, Td: 0, b: 1, filter: { type: "none" } }), "Kp 0.6476398, Ti 2.84489");
+  assert.equal(settingsLine(pid), "Kp 0.9348808, Ti 18.1077739, Td 4.3558718, Tf 0.43558718");
+  for (const other of [{ form: "parallel", Kp: 1, Ki: 2, Kd: 0 }, { Kp: 1, Ti: 2, Td: 1, filter: { type: "derivative", Tf: 0.1 } }, { Kp: 1, c: 1 }])
+    assert.deepEqual(parseSettings(settingsLine(other)), { value: other });
+  assert.ok("sentence" in parseSettings("{Kp: 1}"));
   assert.deepEqual(parseSettings("Kc 1.1, Ti 7.2", ["Kc", "Ti"]), { value: { Kc: 1.1, Ti: 7.2 } });
+});
+
+test("a limit that has no slider is kept too", () => {
+  const request = { inner: { plant: "1/(s+1)", tune: { controller: "PI", Ms: 1.5, Mt: 1.2 } }, outer: { plant: "1/(9s+1)", tune: { controller: "PID" } }, arrangement: "series", search: "joint" };
+  assert.deepEqual(again("cascade", request).question.request, request);
 });
 
 test("plants that are objects are left to the service to write", () => {

@@ -1,6 +1,6 @@
 // The report and the code of a structure: both are those of a job, which is posted when one of them is wanted.
 import { ApiError, sentenceOf } from "../api/client.ts";
-import { postStructure } from "../api/structure.ts";
+import { endedStructure, postStructure } from "../api/structure.ts";
 import type { StructureQuestion } from "../api/structure.ts";
 import { h } from "../dom.ts";
 import { codeCard } from "../views/cards/code_card.ts";
@@ -28,7 +28,7 @@ export function structureDocuments(announce: (sentence: string) => void): Struct
 
   async function withJob(use: (id: string) => void): Promise<void> {
     if (!shown) return;
-    const asked = (job ??= postStructure(shown.question).then(({ id }) => id));
+    const asked = (job ??= postStructure(shown.question).then((posted) => endedStructure(posted)).then(({ id }) => id));
     try {
       const id = await asked;
       if (job === asked) use(id);

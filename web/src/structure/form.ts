@@ -188,8 +188,7 @@ export function structureForm(errors: FormErrors, onChange: (held: boolean) => v
   }
 
   function show(next: StructureId, given: Texts): void {
-    if (next !== id) settings = [];
-    [id, texts] = [next, given];
+    [id, texts, settings] = [next, given, []];
     clear();
     const spec = STRUCTURE_SPECS[id];
     const fields = fieldsOf(id, texts);

@@ -28,12 +28,20 @@ function set(box: Box, key: string, value: unknown): void {
   at[last] = value;
 }
 
+const PID = ["Kp", "Ti", "Td", "Tf", "b"];
+const FILTER = "measurement_second_order";
 const SETTING = /([A-Za-z]+)\s*[=:]?\s*([+\-−]?[\d.,]+(?:e[+-]?\d+)?)/gi;
 
 type Read = { value: unknown } | { sentence: string };
 
-/** "Kp 0.65, Ti 2.8, Td 0.4, Tf 0.1": settings in the ideal form, or those of `parameters`. */
-export function parseSettings(text: string, parameters: readonly string[] = ["Kp", "Ti", "Td", "Tf", "b"]): Read {
+/** "Kp 0.65, Ti 2.8, Td 0.4, Tf 0.1": settings in the ideal form, or those of `parameters`; any other controller as JSON. */
+export function parseSettings(text: string, parameters: readonly string[] = PID): Read {
+  if (text.trim().startsWith("{"))
+    try {
+      return { value: JSON.parse(text) as unknown };
+    } catch {
+      return { sentence: "This is not JSON. Write a controller as in the API, or its settings in the ideal form." };
+    }
   const values: Record<string, number> = {};
   const example = `Write ${parameters.map((name, index) => `${name} ${[0.65, 2.8, 0.4, 0.1, 1][index]}`).slice(0, 2).join(", ")} for example.`;
   const rest = text.replace(SETTING, (_, name: string, number: string) => {
@@ -48,17 +56,18 @@ export function parseSettings(text: string, parameters: readonly string[] = ["Kp
   const first = parameters[0]!;
   if (values[first] === undefined) return { sentence: `${first} is missing. ${example}` };
   const { Tf, ...settings } = values;
-  return { value: Tf === undefined ? settings : { ...settings, filter: { type: "measurement_second_order", Tf } } };
+  return { value: Tf === undefined ? settings : { ...settings, filter: { type: FILTER, Tf } } };
 }
 
 /** Settings as they are typed; "" for none. */
-export function settingsLine(settings: unknown, parameters: readonly string[] = ["Kp", "Ti", "Td", "Tf", "b"]): string {
-  if (typeof settings !== "object" || settings === null) return "";
-  const all = { ...settings, ...((settings as { filter?: { Tf?: number } }).filter ?? {}) } as Record<string, unknown>;
-  const usual: Record<string, number> = { Td: 0, Tf: 0, b: 1, Lf: 0 };
-  return parameters
-    .flatMap((name) => (typeof all[name] === "number" && all[name] !== usual[name] ? [`${name} ${exactText(Number(all[name].toPrecision(5)))}`] : []))
-    .join(", ");
+export function settingsLine(settings: object, parameters: readonly string[] = PID): string {
+  const { form = "ideal", c = 0, filter, action: _action, ...rest } = settings as Record<string, unknown> & { filter?: { type?: string; Tf?: number } };
+  const { type = "none", Tf, ...others } = filter ?? {};
+  const known = Object.keys(rest).every((name) => parameters.includes(name)) && Object.keys(others).length === 0;
+  if (form !== "ideal" || c !== 0 || !known || (type !== "none" && type !== FILTER)) return JSON.stringify(settings);
+  const all: Record<string, unknown> = type === FILTER ? { ...rest, Tf } : rest;
+  const usual: Record<string, number> = { Td: 0, b: 1, Lf: 0 };
+  return parameters.flatMap((name) => (typeof all[name] === "number" && all[name] !== usual[name] ? [`${name} ${exactText(all[name])}`] : [])).join(", ");
 }
 
 function parseFraction(text: string, label: string): Read {

@@ -41,14 +41,14 @@ export function structureResult(announce: (sentence: string) => void, documents:
   const plots = plotGrid(announce);
   const tables = h("div", { class: "structure-tables" });
   const stale = staleMark(() => element);
-  const element = h("div", { class: "structure-results", hidden: true }, stale.element, verdict, typing, plots.element, own.element, documents.code, tables);
+  const element = h("div", { class: "structure-results", hidden: true }, stale.element, verdict, h("div", { class: "structure-typing" }, typing, own.element), plots.element, tables, documents.code);
 
   function showVerdict(answer: StructureAnswer, units: UnitNames): void {
     const [head, ...rest] = answer.verdict.map((conclusion) => conclusionWords(conclusion, units));
     verdict.className = `verdict ${head ? LEVEL_CLASS[head.level] : ""}`;
     verdict.replaceChildren(
       h("h2", { "data-code": head?.code }, withMinus(head?.text ?? NO_REMARKS)),
-      ...Object.values(("why_null" in answer && answer.why_null) || {}).map((why) => h("p", {}, why)),
+      ...[...new Set(Object.values(("why_null" in answer && answer.why_null) || {}))].map((why) => h("p", {}, why)),
       ...rest.map(({ code, level, text }) => h("p", { class: LEVEL_CLASS[level], "data-code": code }, withMinus(text))),
     );
   }
@@ -69,9 +69,11 @@ export function structureResult(announce: (sentence: string) => void, documents:
 
   function showPlots(answer: StructureAnswer, units: UnitNames): void {
     const frames: [string, Frame | null][] = [...structureResponses(answer, units), ["peaks", structureSensitivities(answer, units)], ["level", levelChoices(answer)]];
-    for (const key of shownPlots) if (!frames.some(([name]) => name === key)) plots.show(key, null);
+    const keys = frames.map(([key]) => key);
+    // A new plot stands last: with other inputs all are made anew, in their order.
+    if (keys.join() !== shownPlots.join()) for (const key of shownPlots) plots.show(key, null);
     for (const [key, frame] of frames) plots.show(key, frame);
-    shownPlots = frames.map(([key]) => key);
+    shownPlots = keys;
   }
 
   function showTables(answer: StructureAnswer, units: UnitNames): void {

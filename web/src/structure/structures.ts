@@ -62,6 +62,8 @@ const settings = (key: string, label: string, by: string, more: More = {}): Fiel
 const today = (key: string, label: string): FieldSpec => ({ key, kind: "controller", label, placeholder: "Kp 0.5, Ti 10", optional: true });
 const ms = (key: string, label: string, more: More = {}): FieldSpec => number(key, label, { optional: true, slider: MS_SLIDER, ...more });
 
+const mt = (key: string, words: string, by: string): FieldSpec => number(key, words, { optional: true, placeholder: "default", ...isDesigned(by) });
+
 const cascadeFields = (): FieldSpec[] => [
   ...(["outer", "inner"] as const).flatMap((loop) => [
     choice(`${loop}.tune.controller`, `${loop === "inner" ? "Inner" : "Outer"} controller`, DESIGNS, `${loop}.controller`),
@@ -74,6 +76,8 @@ const cascadeFields = (): FieldSpec[] => [
   ms("inner.tune.Ms", "Ms, inner loop", isDesigned("inner.tune.controller")),
   ms("outer.tune.Ms", "Ms, outer loop", isDesigned("outer.tune.controller")),
   ms("limits.Ms_valve", "Ms at the valve", { slider: { ...MS_SLIDER, to: 2.5 } }),
+  mt("inner.tune.Mt", "Mt, inner loop", "inner.tune.controller"),
+  mt("outer.tune.Mt", "Mt, outer loop", "outer.tune.controller"),
   today("baseline.inner", "Inner controller today"),
   today("baseline.outer", "Outer controller today"),
 ];
@@ -86,6 +90,7 @@ const feedforwardFields = (): FieldSpec[] => [
   plant("plant", "Plant, from u to y"),
   plant("disturbance", "Disturbance, from d to y"),
   ms("feedback.tune.Ms", "Ms of the feedback loop", isDesigned("feedback.tune.controller")),
+  mt("feedback.tune.Mt", "Mt of the feedback loop", "feedback.tune.controller"),
   number("feedforward.jump", "First move of u", {
     unit: "u",
     hint: "after a unit step of d",

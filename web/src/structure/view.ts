@@ -5,7 +5,7 @@ import { getJob } from "../api/jobs.ts";
 import { latest } from "../api/latest.ts";
 import { parsePlant } from "../api/plants.ts";
 import { designStructure, isStructure, isStructureRequest, STRUCTURES } from "../api/structure.ts";
-import type { StructureAnswer, StructureId, StructureJob, StructureQuestion, StructureRequest } from "../api/structure.ts";
+import type { Designed, StructureAnswer, StructureId, StructureJob, StructureQuestion, StructureRequest } from "../api/structure.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { tabs } from "../form/tabs.ts";
@@ -50,7 +50,8 @@ export function structureView(store: Store, announce: (sentence: string) => void
   const errors = new FormErrors();
   let id: StructureId = "cascade";
   let opened = "";
-  /** Duration of the last design, ms. */
+  /** When the last design was sent, and its duration, ms. */
+  let began = 0;
   let cost = 0;
   let lateTimer: ReturnType<typeof setTimeout> | undefined;
   /** What was typed for each structure. */
@@ -59,6 +60,7 @@ export function structureView(store: Store, announce: (sentence: string) => void
   const heading = h("h1", { tabindex: -1 }, "Loops around the loop");
   const purpose = h("p", { class: "hint" });
   const busy = h("span", { class: "hint busy idle", role: "status" });
+  const cancel = h("button", { type: "button", class: "quiet", hidden: true, onclick: stop }, "Cancel");
   const trouble = h("p", { class: "trouble", role: "alert", hidden: true });
   const menu = requestMenu(announce);
   const link = copyButton({ label: "Copy link", look: "quiet", text: () => new URL(formatRoute(routeOf(id, form.texts())), location.href).href }, announce);
@@ -78,7 +80,7 @@ export function structureView(store: Store, announce: (sentence: string) => void
       },
     },
   );
-  const element = h("main", { class: "identify structure", id: "main" }, h("div", { class: "identify-head" }, heading, busy, link, menu.element), kinds.element);
+  const element = h("main", { class: "identify structure", id: "main" }, h("div", { class: "identify-head" }, heading, link, menu.element, cancel, busy), kinds.element);
   examples.append(
     "Examples: ",
     ...STRUCTURES.flatMap((of) =>
@@ -86,12 +88,12 @@ export function structureView(store: Store, announce: (sentence: string) => void
     ),
   );
 
-  const calls = latest<Asked, StructureAnswer>(
+  const calls = latest<Asked, Designed>(
     async (asked, signal) => {
-      const began = performance.now();
-      const answer = await designStructure(asked, signal);
+      began = performance.now();
+      const designed = await designStructure(asked, signal);
       cost = performance.now() - began;
-      return answer;
+      return designed;
     },
     {
       onBusy(now) {
@@ -99,8 +101,8 @@ export function structureView(store: Store, announce: (sentence: string) => void
         if (now) lateTimer = setTimeout(() => setBusy(true), LATE_MS);
         else setBusy(false);
       },
-      onAnswer(answer, asked) {
-        take(answer, asked);
+      onAnswer({ answer, job }, asked) {
+        take(answer, asked, job);
         if (!asked.held) announce(result.sentence());
       },
       onError: complain,
@@ -122,7 +124,15 @@ export function structureView(store: Store, announce: (sentence: string) => void
 
   function setBusy(now: boolean): void {
     busy.textContent = now ? "Designing..." : "";
+    cancel.hidden = !now;
     element.toggleAttribute("data-busy", now);
+  }
+
+  function stop(): void {
+    calls.drop();
+    clearTimeout(lateTimer);
+    setBusy(false);
+    result.setStale(answered);
   }
 
   function complain(error: unknown): void {
@@ -152,24 +162,20 @@ export function structureView(store: Store, announce: (sentence: string) => void
     errors.mark("", faults);
     const implement = held ? null : own.implement();
     const added = { evaluate: { points: held ? HELD_POINTS : POINTS }, ...(implement ? { implement } : {}) };
-    if (faults.length === 0) return calls.send({ id, request: { ...question.request, ...added }, held });
-    calls.drop();
-    setBusy(false);
-    result.setStale(answered);
+    if (faults.length > 0) return stop();
+    // A slow design that is no longer wanted is not awaited.
+    if (!held && performance.now() - began > LONGEST_FOLLOWING_MS) calls.drop();
+    calls.send({ id, request: { ...question.request, ...added }, held });
   }
 
   /** `job`: one that has the answer. */
   function show(next: StructureId, texts: Texts, job: StructureJob | null = null): void {
-    calls.drop();
-    setBusy(false);
+    answered = false;
+    stop();
     trouble.hidden = true;
     cost = 0;
-    // An answer stays until that to other texts is there.
-    if (next !== id || !answered) {
-      answered = false;
-      result.clear();
-      menu.show("", null);
-    }
+    result.clear();
+    menu.show("", null);
     id = next;
     kinds.select(id);
     const { purpose: words, section } = STRUCTURE_SPECS[id];

@@ -128,9 +128,11 @@ export function polynomial(coefficients: readonly number[]): string {
   return terms.map(({ sign, text }, index) => (index === 0 ? (sign === "−" ? `−${text}` : text) : ` ${sign} ${text}`)).join("") || "0";
 }
 
+const sixDigits = (value: number): string => String(Number(value.toPrecision(6)));
+
 function fraction(name: string, { num, den }: { num: number[]; den: number[] }): StructureSetting {
   const text = den.length === 1 && den[0] === 1 ? polynomial(num) : `(${polynomial(num)})/(${polynomial(den)})`;
-  return { name, unit: "", text, exact: `${num.join(" ")} / ${den.join(" ")}` };
+  return { name, unit: "", text, exact: `${num.map(sixDigits).join(" ")} / ${den.map(sixDigits).join(" ")}` };
 }
 
 /** What to type into each controller of the answer. */

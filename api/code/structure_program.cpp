@@ -90,14 +90,12 @@ Expected<std::vector<ParallelPid>> controllers_in(const Json& answer, Reader& re
     return out;
 }
 
-/// The compensator that was asked for, else the last that can be built. Null if there is none.
+/// The compensator that was asked for, else the chosen one. Null if it cannot be built.
 const Json* chosen_compensator(const Json& answer, const CodeQuestion& question) {
-    const Json* found = nullptr;
+    const std::string kind = question.compensator.value_or(answer.at("chosen").get<std::string>());
     for (const Json& variant : answer.at("variants"))
-        if (variant.at("compensator").is_object() &&
-            (!question.compensator || variant.at("kind") == *question.compensator))
-            found = &variant.at("compensator");
-    return found;
+        if (variant.at("kind") == kind && variant.at("compensator").is_object()) return &variant.at("compensator");
+    return nullptr;
 }
 
 Expected<code::Program> program_of(const Source& s) {

@@ -107,11 +107,13 @@ Expected<FeedforwardAnswer> answered(const FeedforwardRequest& request, const Ru
                                                 .feedback = out.feedback,
                                                 .jump = request.feedforward.jump,
                                                 .given = request.controller,
+                                                .wanted = request.feedforward.method,
                                                 .wrong = request.uncertainty};
     auto result = design_feedforward(problem, control);
     if (!result) return result.error();
     out.result = std::move(*result);
     out.partial = out.result.partial;
+    out.chosen = request.controller ? structure::FeedforwardKind::given : problem.wanted;
     out.verdict = conclusions_on(out.result, problem);
     out.drawing = draw(problem, out.result, request.points);
     add_settings(request, "feedback", 0, out.feedback, out);

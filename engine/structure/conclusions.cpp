@@ -113,7 +113,7 @@ Conclusions conclusions_on(const FeedforwardResult& result, const FeedforwardPro
     const FeedforwardVariant& none = *of(FeedforwardKind::none);
     const double IAE_none = none.figures.IAE;
     const FeedforwardVariant* best = of(FeedforwardKind::given);
-    if (best == nullptr) best = of(FeedforwardKind::optimum);
+    if (best == nullptr) best = of(problem.wanted);
     if (best != nullptr) {
         const double gain = IAE_none / best->figures.IAE;
         if (best->figures.IAE <= kExact * IAE_none)

@@ -30,14 +30,6 @@ struct Feedforward {
     double jump() const { return Tp > 0 ? Kf * Tz / Tp : Kf; }
 };
 
-struct FeedforwardProblem {
-    LinearPlant plant, disturbance;
-    IdealPid feedback;
-    double jump = 10;                       ///< largest |first move of u| after a unit step of d; > 0
-    std::optional<Feedforward> given = {};  ///< judged, in place of the designs
-    double wrong = 0.2;                     ///< share by which gains and dead times are taken to be wrong
-};
-
 enum class FeedforwardKind {
     none,
     gain,     ///< static: Kd/K
@@ -49,6 +41,15 @@ enum class FeedforwardKind {
 
 /// "static" for gain, "guzman_hagglund" for rule.
 const char* name_of(FeedforwardKind kind);
+
+struct FeedforwardProblem {
+    LinearPlant plant, disturbance;
+    IdealPid feedback;
+    double jump = 10;                                   ///< largest |first move of u| after a unit step of d; > 0
+    std::optional<Feedforward> given = {};              ///< judged, in place of the designs
+    FeedforwardKind wanted = FeedforwardKind::optimum;  ///< of the designs: the one that conclusions are about
+    double wrong = 0.2;                                 ///< share by which gains and dead times are taken to be wrong
+};
 
 struct FeedforwardVariant {
     FeedforwardKind kind = FeedforwardKind::none;

@@ -88,7 +88,7 @@ void add_rules(Description<Asked>& d) {
                                           {"guzman_hagglund", "guzman_hagglund"},
                                           {"optimum", "optimum"},
                                           {"given", "given"}})),
-               "Feedforward: which of the answer's; default: the last.");
+               "Feedforward: which of the answer's; default: the chosen one.");
 }
 
 }  // namespace

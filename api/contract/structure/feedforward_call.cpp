@@ -1,5 +1,7 @@
 #include "api/contract/structure/feedforward_call.h"
 
+#include <initializer_list>
+
 #include <cmath>
 
 namespace tunewright::api {
@@ -27,12 +29,31 @@ const Description<Feedforward>& compensator_contract() {
     return description;
 }
 
+Words<structure::FeedforwardKind> kind_words(std::initializer_list<structure::FeedforwardKind> kinds) {
+    Words<structure::FeedforwardKind> words;
+    for (const auto kind : kinds) words.emplace_back(name_of(kind), kind);
+    return words;
+}
+
 const auto& feedforward_wish_contract() {
     using W = decltype(FeedforwardRequest::feedforward);
     static const auto description = [] {
+        using enum structure::FeedforwardKind;
         Description<W> d("FeedforwardWish", "Limits of the compensator.");
         d.field("jump", &W::jump, number({.exclusive_minimum = 0}),
-                "The largest first move of u after a unit step of the disturbance.");
+                "The largest first move of u after a unit step of the disturbance.")
+            .field("method", &W::method, choice<structure::FeedforwardKind>(kind_words({gain, inverse, rule, optimum})),
+                   "Which of the designs the conclusions and the program are about; all of them are answered.")
+            .field(
+                "form",
+                [](const Json& value, W&, Reader& reader) {
+                    if (value != "lead_lag") reader.fault("form is " + shown(value) + "; only lead_lag is supported.");
+                },
+                {},
+                [](SchemaBook&) {
+                    return Json{{"const", "lead_lag"}, {"default", "lead_lag"}};
+                },
+                "A lead, a lag and a dead time.");
         return d;
     }();
     return description;
@@ -106,24 +127,20 @@ void write_wrong(const FeedforwardVariant& v, Writer& out) {
     out.end_object();
 }
 
-Words<structure::FeedforwardKind> kind_words() {
-    using enum structure::FeedforwardKind;
-    Words<structure::FeedforwardKind> words;
-    for (const auto kind : {none, gain, inverse, rule, optimum, given}) words.emplace_back(name_of(kind), kind);
-    return words;
-}
-
 const Description<FeedforwardVariant>& variant_contract() {
     static const auto description = [] {
         using V = FeedforwardVariant;
+        using enum structure::FeedforwardKind;
         const auto figure_of = [](double structure::StepFigures::*member) {
             return
                 [member](const V& v, Writer& out) { v.why_not.empty() ? out.number(v.figures.*member) : out.null(); };
         };
         Description<V> d("FeedforwardVariant", "A compensator and its figures after a unit step of the disturbance.");
-        d.field("kind", &V::kind, only_answered(choice<structure::FeedforwardKind>(kind_words())),
-                "none: feedback alone; static: the gain alone; inverse: lead, lag and delay of both plants; "
-                "guzman_hagglund: the rule of 2011; optimum: the least IAE.")
+        d.field(
+             "kind", &V::kind,
+             only_answered(choice<structure::FeedforwardKind>(kind_words({none, gain, inverse, rule, optimum, given}))),
+             "none: feedback alone; static: the gain alone; inverse: lead, lag and delay of both plants; "
+             "guzman_hagglund: the rule of 2011; optimum: the least IAE.")
             .field(
                 "compensator", {},
                 [](const V& v, Writer& out) {
@@ -189,6 +206,9 @@ const Description<FeedforwardAnswer>& feedforward_answer_contract() {
                 "variants", {},
                 [](const A& a, Writer& out) { list_of(answer(variant_contract())).write(a.result.variants, out); },
                 list_of(answer(variant_contract())).schema, "Without feedforward, then the compensators.")
+            .field(
+                "chosen", {}, [](const A& a, Writer& out) { out.text(name_of(a.chosen)); }, words().schema,
+                "The variant that the conclusions and the program are about.")
             .field("late", {}, [](const A& a, Writer& out) { out.number(a.result.late); }, number().schema,
                    "Dead time of the plant less that of the disturbance: above 0 no compensator is exact.",
                    {.unit = "time"})

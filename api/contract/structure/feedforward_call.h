@@ -17,6 +17,7 @@ struct FeedforwardRequest : StructureRequest {
     FeedbackWish feedback;
     struct {
         double jump = 10;
+        structure::FeedforwardKind method = structure::FeedforwardKind::optimum;
     } feedforward;
     std::optional<structure::Feedforward> controller;
     double uncertainty = 0.2;
@@ -26,6 +27,7 @@ const Description<FeedforwardRequest>& feedforward_request_contract();
 struct FeedforwardAnswer : StructureAnswer {
     IdealPid feedback;
     structure::FeedforwardResult result;
+    structure::FeedforwardKind chosen = structure::FeedforwardKind::optimum;
 };
 const Description<FeedforwardAnswer>& feedforward_answer_contract();
 

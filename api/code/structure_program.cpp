@@ -112,7 +112,7 @@ Expected<code::Program> program_of(const Source& s) {
     }
     if (structure == "level") return structure::level_program(s.law(0), s.options(), s.answer.value("gap", 0.0));
     if (structure == "predictor")
-        return structure::predictor_program(predictor_of(s.answer, s.asked.unit), s.Ts, s.options());
+        return structure::predictor_program(predictor_of(s.answer, s.asked.unit), s.law(0), s.options());
     if (structure == "feedforward") {
         const Json* compensator = chosen_compensator(s.answer, question);
         if (compensator == nullptr)

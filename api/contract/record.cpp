@@ -185,11 +185,6 @@ const Description<Units>& units_contract() {
                 "Unit of every time of the request and the result; s if not given.")
             .field("u", &Units::u, maybe(text(kLongest)), "Unit of the controller output.")
             .field("y", &Units::y, maybe(text(kLongest)), "Unit of the measurement.")
-            .field("level",
-                   [codec = maybe(text(kLongest))](const Json& value, Units& units, Reader& reader) {
-                       codec.read(value, units.y, reader);
-                   },
-                   {}, maybe(text(kLongest)).schema, "The same of a level; only in requests.", {.no_default = true})
             .check([](const Json&, Units& units, Reader& reader) { reader.set_time_unit(units.time_or_default()); });
         return d;
     }();

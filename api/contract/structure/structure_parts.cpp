@@ -170,6 +170,18 @@ const Description<DrawingWish>& drawing_wish_contract() {
 
 }  // namespace
 
+Codec<std::optional<Units>> units_with_level() {
+    auto codec = maybe(object(units_contract()));
+    codec.read = [inner = codec.read](const Json& value, std::optional<Units>& units, Reader& reader) {
+        if (!value.is_object() || !value.contains("level") || value.contains("y")) return inner(value, units, reader);
+        Json renamed = value;
+        renamed["y"] = value["level"];
+        renamed.erase("level");
+        inner(renamed, units, reader);
+    };
+    return codec;
+}
+
 Codec<StructureRequest> drawing_wish() {
     const auto inner = object(drawing_wish_contract());
     Codec<StructureRequest> codec;

@@ -107,14 +107,16 @@ void add_structure_name(Description<T>& d, const char* structure) {
         "The structure.");
 }
 
-Codec<StructureRequest> drawing_wish();  ///< {"points": 200}
-Codec<StructureRequest> devices_wish();  ///< a device, or one for each controller
+Codec<std::optional<Units>> units_with_level();  ///< in which y may be called level
+Codec<StructureRequest> drawing_wish();          ///< {"points": 200}
+Codec<StructureRequest> devices_wish();          ///< a device, or one for each controller
 
 /// The members of every request; the check of the devices' needs is that of the structure.
 template <class Request>
 void add_structure_members(Description<Request>& d, const char* structure) {
     add_structure_name(d, structure);
-    add_labels(d);
+    d.field("name", &Request::name, maybe(text(kMaxNameLength)), "A label, such as the loop's tag.")
+        .field("units", &Request::units, units_with_level(), "Labels of the units, echoed; level is y.");
     d.field(
          "evaluate", [wish = drawing_wish()](const Json& v, Request& r, Reader& reader) { wish.read(v, r, reader); },
          {}, drawing_wish().schema, "points of each series of the drawing, default 200; 0: none.")

@@ -20,7 +20,6 @@ constexpr double kSlopeOfRule = 1.7;               // Guzman and Hagglund: a ove
 constexpr double kFirstSteps[] = {0.1, 0.3, 0.5};  // of ln(Kf), ln(Tz), ln(Tp)
 constexpr int kMostEvaluations = 160;              // of each of the searches
 constexpr double kShortLag = 0.05;                 // of the lead: a start whose first move is large
-constexpr double kShortLead = 0.3;                 // of the inverse's: another one
 constexpr double kNearZero = 1e-5;                 // of 1/time: where transforms are taken for 0
 
 struct Diagram {
@@ -137,9 +136,9 @@ Feedforward optimum_of(const FeedforwardProblem& problem, const Feedforward& rul
     };
     Feedforward quick = inverse;
     quick.Tp = std::max(kShortLag * quick.Tz, 1e-3 * time);
-    Feedforward brief = quick;  // a short lead, on plants that are little later than the disturbance
-    brief.Tz = kShortLead * time;
-    brief.Tp = kShortLag * time;
+    Feedforward brief = quick;  // of equal lags the inverse is a gain: what helps is a pulse as long as the lateness
+    brief.Tz = std::max(problem.plant.dead_time() - problem.disturbance.dead_time(), 1e-3 * time);
+    brief.Tp = kShortLag * brief.Tz;
     Feedforward best = inverse;
     double least = kInfinity;
     const double none = IAE_of(problem, {});

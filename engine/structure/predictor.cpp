@@ -25,7 +25,7 @@ using Complex = std::complex<double>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kQuickest = 0.02, kSlowest = 50;        // of L + |T|: lambda and Tf
 constexpr double kOfCrossing = 1e-15, kOfKnob = 1e-9;    // relative: where the bisection ends
-constexpr double kSlower = 1.3, kOfKnobForPlant = 1e-6;  // ratio of the knobs tried on a plant that is not the model
+constexpr double kSlower = 1.1, kOfKnobForPlant = 1e-6;  // ratio of the knobs tried on a plant that is not the model
 constexpr int kPerDecade = 400;                          // frequencies at which |S| = |T| is looked for
 constexpr double kLow = 1e-3, kHigh = 1e3;               // of 1/L
 constexpr double kMostMs = 1.99;
@@ -42,6 +42,8 @@ Expected<LinearPlant> block(const Rational& r, double gain = 1, double L = 0) {
 Rational fraction_of(const PredictorModel& m) {
     return m.integrating ? Rational{{m.K}, {1, 0}} : Rational{{m.K}, {m.T, 1}};
 }
+
+double scale_of(const PredictorModel& m) { return m.L + (m.integrating ? 0 : std::abs(m.T)); }
 
 /// beta of the filtered predictor.
 double zero_of(const PredictorModel& m, double Tf) {
@@ -171,23 +173,24 @@ std::optional<Error> refused(const PredictorModel& m, const PredictorDesign& des
     return std::nullopt;
 }
 
-/// The smallest knob that keeps both limits: the peak falls and the window grows with it.
-double smallest_knob(const PredictorModel& m, const PredictorDesign& design) {
-    const double scale = m.L + (m.integrating ? 0 : std::abs(m.T));
-    const auto grid = fine_grid(m.L);
-    const auto holds = [&](double knob, bool window) {
+/// The smallest knob from `first` on that keeps the limits; empty: none does. Not by bisection over the whole range:
+/// beta of a filtered predictor becomes negative far above the lag, and its peak rises again.
+template <class Keeps>
+std::optional<double> smallest_knob(const PredictorModel& m, double first, double tolerance, const Keeps& keeps) {
+    for (double knob = first; knob <= kSlowest * scale_of(m); knob *= kSlower)
+        if (keeps(knob)) return knob == first ? knob : log_bisect({knob, knob / kSlower}, keeps, tolerance).inside;
+    return std::nullopt;
+}
+
+/// With the exact model.
+std::optional<double> knob_for_model(const PredictorModel& m, const PredictorDesign& design) {
+    return smallest_knob(m, kQuickest * scale_of(m), kOfKnob, [&, grid = fine_grid(m.L)](double knob) {
         const auto T = closed_loop(m, design.kind, knob);
-        if (!window) return Ms_of(m, T) <= design.Ms;
+        if (!(Ms_of(m, T) <= design.Ms)) return false;
+        if (!design.dead_time_error) return true;
         const Window found = window_of(T, grid);
         return std::min(found.up, found.down) >= *design.dead_time_error * m.L;
-    };
-    const auto smallest = [&](bool window) {
-        const auto keeps = [&](double knob) { return holds(knob, window); };
-        return log_bisect({kSlowest * scale, kQuickest * scale}, keeps, kOfKnob).inside;
-    };
-    const double by_Ms = smallest(false);
-    if (!design.dead_time_error) return by_Ms;
-    return std::max(by_Ms, smallest(true));
+    });
 }
 
 /// True if the loop with the true plant keeps the limits.
@@ -201,16 +204,6 @@ bool keeps_limits(const LinearPlant& plant, const PredictorController& controlle
     const Window window = window_of([&](double omega) { return at_plant.at(omega).T; }, fine_grid(controller.model.L));
     const double wanted = *design.dead_time_error * controller.model.L * (1 - limits::kMaxRelativeExcessSearched);
     return window.up >= wanted && window.down >= std::min(wanted, plant.dead_time());
-}
-
-/// From the knob that suits the model to the next slower one that suits the plant; empty: there is none.
-std::optional<double> knob_for_plant(const LinearPlant& plant, const PredictorModel& m, const PredictorDesign& design,
-                                     double knob) {
-    const auto keeps = [&](double one) { return keeps_limits(plant, controller_of(m, design.kind, one), design); };
-    for (double slower = knob; slower <= kSlowest * (m.L + std::abs(m.T)); slower *= kSlower)
-        if (keeps(slower))
-            return slower == knob ? knob : log_bisect({slower, slower / kSlower}, keeps, kOfKnobForPlant).inside;
-    return std::nullopt;
 }
 
 struct PidLoop {
@@ -303,17 +296,16 @@ Expected<PredictorResult> design_predictor(const PredictorModel& model, const Li
     if (auto error = refused(model, design)) return *error;
     PredictorResult out;
     const bool fixed = design.kind == PredictorKind::predictive_pi;
-    double knob = fixed ? model.T : smallest_knob(model, design);
-    if (const auto own = model_of(plant); !fixed && own != model) {
-        const auto slower = knob_for_plant(plant, model, design, knob);
-        if (!slower)
-            return Error{
-                ErrorKind::no_feasible_controller, "model",
-                "With this model no predictor keeps the limits on the plant; give a model nearer to the plant, "
-                "or allow a larger Ms."};
-        knob = *slower;
-    }
-    out.controller = controller_of(model, design.kind, knob);
+    auto knob = fixed ? std::optional(model.T) : knob_for_model(model, design);
+    if (const auto own = model_of(plant); knob && !fixed && own != model)
+        knob = smallest_knob(model, *knob, kOfKnobForPlant, [&](double one) {
+            return keeps_limits(plant, controller_of(model, design.kind, one), design);
+        });
+    if (!knob)
+        return Error{ErrorKind::no_feasible_controller, "Ms",
+                     "No predictor of this kind and model keeps the limits on the plant; allow a larger Ms, or give a "
+                     "model nearer to the plant."};
+    out.controller = controller_of(model, design.kind, *knob);
     auto figures = judge_predictor(plant, out.controller);
     if (!figures) return figures.error();
     out.figures = std::move(*figures);

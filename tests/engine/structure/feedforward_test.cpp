@@ -63,7 +63,16 @@ TEST(Feedforward, OptimaAreAtMostTwoPerMilleAboveThoseOfAnIndependentSearch) {
     };
     for (const Row& row : {Row{toolbox_late(4), 11.423},
                            {toolbox_late(12), 9.1329},
-                           {{first_order(1, 10, 4), first_order(1, 10, 1), pi(1.25, 12), 10}, 0.864}}) {
+                           {{first_order(1, 10, 4), first_order(1, 10, 1), pi(1.25, 12), 10}, 0.864},
+                           // A lateness far below nearly equal lags: a short lead, far from the inverse's.
+                           {{first_order(1.5365096, 26.183933, 3.293216865),
+                             first_order(2.319267788, 26.425585, 2.644077366),
+                             {.Kp = 2.8734774998421395,
+                             .Ti = 7.9906450917413006,
+                             .Td = 1.4475927511336069,
+                             .filter = {FilterType::measurement_second_order, 0.1447592751133607}},
+                             14.517547},
+                            0.07126}}) {
         const auto result = design_feedforward(row.problem, {});
         ASSERT_TRUE(result);
         const FeedforwardVariant& best = variant(*result, FeedforwardKind::optimum);

@@ -177,6 +177,24 @@ TEST(Predictor, LimitsHoldOnAPlantThatTheModelDescribesRoughly) {
     }
 }
 
+TEST(Predictor, AFilteredPredictorKeepsLowLimitsOnDeadTimesFarAboveTheLag) {
+    // With a Tf far above the lag beta is negative and the peak rises again.
+    RandomNumbers random(9);
+    for (int i = 0; i < 8; ++i) {
+        const double T = random.log_uniform(0.1, 1), Ms = random.log_uniform(1.38, 1.55);
+        const auto design =
+            design_predictor({.T = T}, first_order(1, T, 1), {.kind = PredictorKind::filtered_smith, .Ms = Ms}, {});
+        ASSERT_TRUE(design) << T << ": " << design.error().message;
+        EXPECT_LE(design->figures.Ms, Ms * (1 + 1e-5)) << T;
+        EXPECT_GE(design->figures.Ms, Ms * (1 - 1e-4)) << T;
+    }
+    // For T = L/2 no Tf has a peak below 1.3299.
+    const auto refused = design_predictor({.T = 0.503}, first_order(1, 0.503, 1),
+                                          {.kind = PredictorKind::filtered_smith, .Ms = 1.32}, {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::no_feasible_controller);
+}
+
 TEST(Predictor, OnAnUnstableModelNothingIsSimulated) {
     const auto design = design_predictor({-1, -4, 0.5}, first_order(-1, -4, 0.5),
                                          {.kind = PredictorKind::filtered_smith, .Ms = 1.9}, {});

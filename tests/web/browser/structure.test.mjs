@@ -249,6 +249,26 @@ test("a design that takes longer than a call may becomes a job, whose report nee
   );
 });
 
+test("the program runs call by call with limits, next to the design", async () => {
+  await withPage("#/structure/cascade", {}, async (page) => {
+    await verdict(page).waitFor();
+    await page.getByText("Call by call, with limits").click();
+    const form = page.getByRole("region", { name: "Limits" });
+    for (const [name, text] of [["Sample time (s)", "1"], ["Largest u", "0.6"], ["Size: set-point step", "3"]]) {
+      await form.getByLabel(name, { exact: true }).fill(text);
+      await page.keyboard.press("Enter");
+    }
+    await page.getByRole("heading", { name: "Set-point step, size 3" }).waitFor();
+    await tracesShown(page, "Set-point step, size 3", 4);
+    await tracesShown(page, "Load at the valve", 10);
+    const request = { sampled: { sample_time: 1, u_max: 0.6, steps: { setpoint: 3 } }, inner: { plant: "2 e^(-s)/(4s+1)", tune: { controller: "PI", Ms: 1.4 } }, outer: { plant: "1.5 e^(-8s)/(30s+1)", tune: { controller: "PID", Ms: 1.4 } }, limits: { Ms_valve: 1.6 } };
+    const { sampled } = await post("v1/cascade", request);
+    const table = page.locator(".structure-tables .card").filter({ has: page.getByRole("heading", { name: "Call by call, with limits" }) });
+    assert.ok((await table.innerText()).includes(three(sampled.Ms.valve)));
+    assert.deepEqual(await accessibilityViolations(page), []);
+  });
+});
+
 test("a job opens with its answer and without another design, and a change makes it a question of its own", async () => {
   const plant = { type: "fopdt", K: 5.6, T: 40.2, L: 93.9 };
   const { id, result } = await post("v1/jobs", { structure: "predictor", name: "pipe", plant, Ms: 1.5 });

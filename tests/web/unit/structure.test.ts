@@ -103,6 +103,13 @@ test("a limit that has no slider is kept too", () => {
   assert.deepEqual(again("cascade", request).question.request, request);
 });
 
+test("a run call by call is asked for by its sample time", () => {
+  const request = { plant: "2 e^(-9s)/(4s+1)", kind: "smith", Ms: 1.5, sampled: { sample_time: 0.5, u_min: -1, u_max: 2, steps: { setpoint: 5 } } };
+  assert.deepEqual(again("predictor", request).question.request, request);
+  const { question } = readQuestion("predictor", { ...textsOf("predictor", request), "sampled.sample_time": " " });
+  assert.equal(question.request["sampled"], undefined);
+});
+
 test("plants that are objects are left to the service to write", () => {
   const fopdt = { type: "fopdt", K: 1, T: 2, L: 3 };
   const request = { plant: fopdt, kind: "smith", Ms: 1.6 };
@@ -160,6 +167,25 @@ test("responses: a plot for each input, a pane for each signal, the design first
   assert.match(frames[0]![1].description, /design: y1 is farthest from 0 at −3/);
   assert.deepEqual(structureResponses(cascade, units), []);
   assert.equal(nameOfInput("load_2"), "Load at the plant input 2");
+});
+
+test("the run call by call is drawn with the design, with a step of another size by itself, and has a table", () => {
+  const figures = [{ IAE: 6.173, IE: 0, peak: 0.18, TV: 1.3 }];
+  const run = (input: string) => ({ input, figures, largest_rate: 0.38, t: [0, 0.5], signals: [{ name: "y1", values: [0, 1] }, { name: "r2", values: [0, 2] }] });
+  const answer = {
+    ...cascade,
+    responses: [answered("design", "inner_load", ["y1", "u"]), answered("single", "inner_load", ["y1", "u"]), answered("design", "setpoint", ["y1", "u"])],
+    sampled: { sample_time: 0.5, Ms: { inner: 1.574 }, responses: [run("inner_load"), run("setpoint")] },
+  } as unknown as AnswerOf<"cascade">;
+  const frames = structureResponses(answer, units, { setpoint: 5 });
+  assert.deepEqual(frames.map(([, { title, panes }]) => [title, panes[0]!.traces.map(({ name, thin }) => [name, thin])]), [
+    ["Load at the valve", [["design", false], ["call by call, with limits", false], ["single loop", true]]],
+    ["Set-point step", [["design", false]]],
+    ["Set-point step, size 5", [["call by call, with limits", false]]],
+  ]);
+  const { columns, groups } = structureTables(answer, units).at(-1)!;
+  const rows = groups.flatMap(({ title, rows }) => rows.map((row) => [title, row.label, row.value(columns[0]!).text]));
+  assert.deepEqual(rows.slice(0, 3), [["Ms without limits", "inner loop", "1.57"], ["Load at the valve", "IAE (°C s)", "6.17"], ["Load at the valve", "Peak", "0.180"]]);
 });
 
 test("peaks: a curve for each loop and a line for each limit", () => {

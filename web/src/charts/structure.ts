@@ -7,8 +7,11 @@ import { formatNumber, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { nameOfDesign, nameOfInput, nameOfLoop } from "../words/structure.ts";
 
+/** The run of the controllers' program, call by call with limits. */
+const PROGRAM = "program";
+
 /** The designs, the one of the answer first; the others are drawn thinner, as far as there are looks. */
-const ORDER = ["design", "given", "optimum", "baseline", "single", "pid", "blt", "none", "inverse", "guzman_hagglund", "detuned", "static"];
+const ORDER = ["design", "given", "optimum", PROGRAM, "baseline", "single", "pid", "blt", "none", "inverse", "guzman_hagglund", "detuned", "static"];
 const LOOKS: readonly Look[] = [1, 2, 3, 4];
 
 const placeOf = (of: string): number => (ORDER.includes(of) ? ORDER.indexOf(of) : ORDER.length);
@@ -26,9 +29,21 @@ function responsePane(name: string, traces: Trace[], units: UnitNames): Pane {
   return { y: { kind: "linear", label: withUnit(label, unit) }, traces, weight: isInput(name) ? 1 : 1.4 };
 }
 
-/** A frame for each input, by its name. */
-export function structureResponses(answer: StructureAnswer, units: UnitNames): [input: string, frame: Frame][] {
-  const { responses } = answer;
+type Response = StructureAnswer["responses"][number];
+
+/** The run of the program, as if it were another design. */
+const programOf = ({ structure, sampled }: StructureAnswer): Response[] =>
+  (sampled?.responses ?? []).map(({ input, t, signals }) => ({
+    of: PROGRAM,
+    input,
+    t,
+    signals: signals.map(({ name, values }) => ({ name: structure === "level" && name === "u" ? "outflow" : name, values })),
+  }));
+
+/** A frame for each input, by its name. `sizes`: of the steps of the program's run; one that differs has a frame of its own. */
+export function structureResponses(answer: StructureAnswer, units: UnitNames, sizes: Record<string, number> = {}): [input: string, frame: Frame][] {
+  const program = programOf(answer).map((one) => ((sizes[one.input] ?? 1) === 1 ? one : { ...one, input: `${one.input} of ${sizes[one.input]!}` }));
+  const responses = [...answer.responses, ...program];
   const designs = drawnDesigns(responses.map(({ of }) => of));
   const inputs = [...new Set(responses.map(({ input }) => input))];
   return inputs.map((input) => {
@@ -36,11 +51,13 @@ export function structureResponses(answer: StructureAnswer, units: UnitNames): [
       const response = responses.find((candidate) => candidate.input === input && candidate.of === of);
       return response ? [{ ...response, index }] : [];
     });
+    // The run of the program may go on for much longer.
+    const horizon = Math.max(0, ...shown.filter(({ of }) => of !== PROGRAM).map(({ t }) => t.at(-1) ?? 0));
     const names = [...new Set(shown.flatMap(({ signals }) => signals.map(({ name }) => name)))].sort((a, b) => Number(isInput(a)) - Number(isInput(b)));
     const panes = names.map((name) => {
       const traces = shown.flatMap(({ of, t, signals, index }): Trace[] => {
         const signal = signals.find((candidate) => candidate.name === name);
-        return signal ? [{ name: nameOfDesign(of), look: LOOKS[index]!, thin: index > 0, x: t, y: signal.values }] : [];
+        return signal ? [{ name: nameOfDesign(of), look: LOOKS[index]!, thin: index > 0 && of !== PROGRAM, x: t, y: signal.values }] : [];
       });
       return responsePane(name, traces, units);
     });
@@ -52,7 +69,7 @@ export function structureResponses(answer: StructureAnswer, units: UnitNames): [
     const frame: Frame = {
       title: nameOfInput(input),
       description: peaks.join(" "),
-      x: { kind: "linear", label: withUnit("time", units.time) },
+      x: { kind: "linear", label: withUnit("time", units.time), ...(horizon > 0 ? { range: [0, horizon] as const } : {}) },
       panes,
       ownLegend: true,
       link: "structure-time",

@@ -4,7 +4,7 @@ import type { ExplainedName } from "../words/explained.ts";
 import type { FigureGroup } from "../words/figures.ts";
 import { formatNumber, product, quotient, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
-import { nameOfDesign } from "../words/structure.ts";
+import { nameOfDesign, nameOfInput, nameOfLoop } from "../words/structure.ts";
 
 /** Figures by name, and the reasons for those that are missing; "": the reason for the others. */
 export interface StructureColumn {
@@ -177,7 +177,38 @@ const predictorTable = ({ robustness, load, setpoint, pid_IAE, why_null }: Answe
   ],
 });
 
+/** The run of the program. */
+function sampledTable({ Ms, responses }: NonNullable<StructureAnswer["sampled"]>, { time, u }: UnitNames, IAE: string): StructureTable {
+  const parts = responses.flatMap(({ input, figures, largest_rate }) => [
+    [`${input}.`, { largest_rate }] as const,
+    ...figures.map((figure, index) => [`${input}.${index}.`, figure] as const),
+  ]);
+  const ofOutput = (index: number, count: number): string => (count > 1 ? ` of y${index + 1}` : "");
+  return {
+    caption: "Call by call, with limits",
+    columns: [column(nameOfDesign("program"), { "Ms.": Ms, ...Object.fromEntries(parts) })],
+    groups: [
+      group("Ms without limits", Object.keys(Ms).filter((place) => place !== "why_null").map((place): Row => [`Ms.${place}`, nameOfLoop(place), "", "Ms"])),
+      ...responses.map(({ input, figures }) =>
+        group(nameOfInput(input), [
+          ...figures.flatMap((_, index): Row[] => [
+            [`${input}.${index}.IAE`, `IAE${ofOutput(index, figures.length)}`, IAE, "IAE"],
+            [`${input}.${index}.peak`, `Peak${ofOutput(index, figures.length)}`],
+          ]),
+          [`${input}.0.TV`, "TV of u", u],
+          [`${input}.largest_rate`, "Largest rate of u", quotient(u, time)],
+        ]),
+      ),
+    ],
+  };
+}
+
 export function structureTables(answer: StructureAnswer, units: UnitNames): StructureTable[] {
+  const run = answer.sampled ? [sampledTable(answer.sampled, units, product(units.y, units.time))] : [];
+  return [...tablesOf(answer, units), ...run];
+}
+
+function tablesOf(answer: StructureAnswer, units: UnitNames): StructureTable[] {
   const IAE = product(units.y, units.time);
   switch (answer.structure) {
     case "cascade":

@@ -17,7 +17,7 @@ import { layoutDiagram } from "./diagram.ts";
 import { plantLine } from "./plant_line.ts";
 import type { PlantLine } from "./plant_line.ts";
 import { pointerOf } from "./question.ts";
-import { fieldsOf, isActive, LABEL_FIELDS, STRUCTURE_SPECS } from "./structures.ts";
+import { fieldsOf, isActive, LABEL_FIELDS, SAMPLED, STRUCTURE_SPECS } from "./structures.ts";
 import type { BlockSpec, FieldSpec, Texts } from "./structures.ts";
 
 export interface StructureForm {
@@ -67,9 +67,11 @@ export function structureForm(errors: FormErrors, onChange: (held: boolean) => v
   const others = h("div", { class: "fields" });
   const today = h("div", { class: "stack" });
   const todayBox = h("details", {}, h("summary", {}, "Today's settings, for comparison"), today);
+  const sampled = h("div", { class: "fields" });
+  const sampledBox = h("details", {}, h("summary", {}, "Call by call, with limits"), sampled);
   const labels = h("div", { class: "fields" });
   const labelBox = h("details", {}, h("summary", {}, "Name and units"), labels);
-  const controls = h("section", { class: "card structure-controls", "aria-label": "Limits" }, h("h2", {}, "Limits"), sliders, others, todayBox, labelBox);
+  const controls = h("section", { class: "card structure-controls", "aria-label": "Limits" }, h("h2", {}, "Limits"), sliders, others, todayBox, sampledBox, labelBox);
 
   const unitOf = ({ unit = "" }: FieldSpec): string => unitIn(unit, unitsOf(texts));
 
@@ -200,9 +202,10 @@ export function structureForm(errors: FormErrors, onChange: (held: boolean) => v
       if (field.kind === "choice") return setup;
       if (field.slider) return sliders;
       if (LABEL_FIELDS.includes(field)) return labels;
+      if (field.key.startsWith(SAMPLED)) return sampled;
       return field.key.startsWith("baseline") ? today : others;
     };
-    for (const home of [setup, sliders, others, today, labels]) home.replaceChildren();
+    for (const home of [setup, sliders, others, today, sampled, labels]) home.replaceChildren();
     for (const field of fields) if (!inBlock(field)) homeOf(field).append(parts.get(field.key)!.element);
     setup.hidden = setup.childElementCount === 0;
     todayBox.hidden = today.childElementCount === 0;

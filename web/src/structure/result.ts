@@ -1,5 +1,5 @@
 // The answer about a structure: verdict, settings to type, responses, peaks, figures next to what it is compared with.
-import type { StructureAnswer } from "../api/structure.ts";
+import type { StructureAnswer, StructureRequest } from "../api/structure.ts";
 import { levelChoices, structureResponses, structureSensitivities } from "../charts/structure.ts";
 import { h } from "../dom.ts";
 import { staleMark } from "../form/errors.ts";
@@ -19,7 +19,7 @@ import { structureTables } from "./figures.ts";
 export interface StructureResult {
   element: HTMLElement;
   /** `held`: a slider is held, and only what moves with it is drawn. */
-  show(answer: StructureAnswer, units: UnitNames, held: boolean): void;
+  show(answer: StructureAnswer, request: StructureRequest, units: UnitNames, held: boolean): void;
   /** The current verdict, for speech. */
   sentence(): string;
   setStale(stale: boolean): void;
@@ -28,6 +28,9 @@ export interface StructureResult {
   hold(held: boolean): void;
   dispose(): void;
 }
+
+/** Of the steps of the run call by call. */
+const sizesOf = ({ sampled }: StructureRequest): Record<string, number> => (sampled as { steps?: Record<string, number> } | undefined)?.steps ?? {};
 
 const NO_REMARKS = "There are no remarks on this answer.";
 
@@ -67,8 +70,8 @@ export function structureResult(announce: (sentence: string) => void, documents:
     );
   }
 
-  function showPlots(answer: StructureAnswer, units: UnitNames): void {
-    const frames: [string, Frame | null][] = [...structureResponses(answer, units), ["peaks", structureSensitivities(answer, units)], ["level", levelChoices(answer)]];
+  function showPlots(answer: StructureAnswer, request: StructureRequest, units: UnitNames): void {
+    const frames: [string, Frame | null][] = [...structureResponses(answer, units, sizesOf(request)), ["peaks", structureSensitivities(answer, units)], ["level", levelChoices(answer)]];
     const keys = frames.map(([key]) => key);
     // A new plot stands last: with other inputs all are made anew, in their order.
     if (keys.join() !== shownPlots.join()) for (const key of shownPlots) plots.show(key, null);
@@ -90,11 +93,11 @@ export function structureResult(announce: (sentence: string) => void, documents:
 
   return {
     element,
-    show(answer, units, held) {
+    show(answer, request, units, held) {
       element.hidden = false;
       stale.set(false);
       showVerdict(answer, units);
-      showPlots(answer, units);
+      showPlots(answer, request, units);
       // Tables and settings below the plots would move them while a slider is held.
       if (held) return;
       showSettings(answer, units);

@@ -1,5 +1,6 @@
 // The five structures: the fields of each question, its sliders, and examples. A field's key is its path in the request.
 import type { StructureId, StructureRequest } from "../api/structure.ts";
+import { nameOfInput } from "../words/structure.ts";
 
 /** Typed texts by the keys of their fields. */
 export type Texts = Record<string, string>;
@@ -270,6 +271,31 @@ const label = (key: string, words: string, placeholder: string): FieldSpec => ({
 /** Name and units, of every structure. */
 export const LABEL_FIELDS: readonly FieldSpec[] = [label("name", "Name", "TIC-101"), label("units.time", "Time in", "s"), label("units.u", "u in", "%"), label("units.y", "y in", "degC")];
 
-export const fieldsOf = (id: StructureId, texts: Texts): FieldSpec[] => [...STRUCTURE_SPECS[id].fields(texts), ...LABEL_FIELDS];
+const INPUTS: Record<StructureId, (texts: Texts) => string[]> = {
+  cascade: () => ["setpoint", "outer_load", "inner_load"],
+  feedforward: () => ["disturbance"],
+  level: () => ["inflow"],
+  interaction: (texts) => loopsOf(texts).flatMap((loop) => [`setpoint_${loop + 1}`, `load_${loop + 1}`]),
+  predictor: () => ["setpoint", "load"],
+};
+
+/** The beginning of the keys of a run of the program, call by call. */
+export const SAMPLED = "sampled.";
+
+/** A run of the program with its limits: without a sample time there is none. */
+function sampledFields(id: StructureId, texts: Texts): FieldSpec[] {
+  const part = (name: string, words: string, unit: string): FieldSpec =>
+    number(SAMPLED + name, words, { unit, optional: true, placeholder: "no limit", active: (all) => Boolean(all["sampled.sample_time"]?.trim()) });
+  return [
+    number("sampled.sample_time", "Sample time", { unit: "time", hint: "empty: no run", optional: true }),
+    part("u_min", "Least u", "u"),
+    part("u_max", "Largest u", "u"),
+    part("rate_limit", "Largest rate of u", "u/time"),
+    ...(id === "cascade" ? [part("r2_min", "Least r2", ""), part("r2_max", "Largest r2", "")] : []),
+    ...INPUTS[id](texts).map((input) => ({ ...part(`steps.${input}`, `Size: ${nameOfInput(input).toLowerCase()}`, ""), placeholder: id === "level" ? "the largest" : "1" })),
+  ];
+}
+
+export const fieldsOf = (id: StructureId, texts: Texts): FieldSpec[] => [...STRUCTURE_SPECS[id].fields(texts), ...sampledFields(id, texts), ...LABEL_FIELDS];
 
 export const isActive = ({ active }: FieldSpec, texts: Texts): boolean => active?.(texts) ?? true;

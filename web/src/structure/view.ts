@@ -116,7 +116,7 @@ export function structureView(store: Store, announce: (sentence: string) => void
     answered = true;
     form.showAnswer(answer);
     const units = unitsOf(form.texts());
-    result.show(answer, units, held);
+    result.show(answer, request, units, held);
     if (held) return;
     documents.about({ id, request }, units, job);
     menu.show(`v1/${id}`, request);

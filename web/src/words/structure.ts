@@ -61,6 +61,7 @@ const OF: Record<string, string> = {
   guzman_hagglund: "Guzmán and Hägglund",
   optimum: "least IAE",
   pid: "PID",
+  program: "call by call, with limits",
   blt: "BLT",
 };
 
@@ -76,8 +77,10 @@ const INPUTS: Record<string, string> = {
   load: "Load at the plant input",
 };
 
-/** "load_2" is the second one. */
+/** "load_2" is the second one; "setpoint of 5" a step of that size. */
 export function nameOfInput(input: string): string {
+  const [step = input, size] = input.split(" of ");
+  if (size !== undefined) return `${nameOfInput(step)}, size ${size}`;
   const [, kind = input, number = ""] = /^(.*?)_?(\d+)?$/.exec(input) ?? [];
   return [INPUTS[input] ?? INPUTS[kind] ?? kind.replaceAll("_", " "), number].filter(Boolean).join(" ");
 }

@@ -1872,6 +1872,8 @@ export type components = {
     };
     FeedforwardWish: {
       jump?: number;
+      method?: "static" | "inverse" | "guzman_hagglund" | "optimum";
+      form?: "lead_lag";
     };
     Feedforward: {
       Kf: number;
@@ -1883,6 +1885,7 @@ export type components = {
       structure: "feedforward";
       feedback: components["schemas"]["Controller"];
       variants: components["schemas"]["FeedforwardVariant"][];
+      chosen: string;
       late: number;
       peak_bound: number;
       partial?: boolean;

@@ -69,7 +69,7 @@ test("a design has no settings, given settings have no limit, and a path that is
   const texts = textsOf("feedforward", firstExample("feedforward"));
   const given = { ...texts, "feedback.tune.controller": "given", feedback: "Kp 1.3333, Ti 60" };
   assert.deepEqual(readQuestion("feedforward", given).question.request["feedback"], { Kp: 1.3333, Ti: 60 });
-  assert.deepEqual(readQuestion("feedforward", { ...given, "feedback.tune.controller": "PID" }).question.request["feedback"], { tune: { controller: "PID", Ms: 1.4 } });
+  assert.deepEqual(readQuestion("feedforward", { ...given, "feedback.tune.controller": "PID" }).question.request["feedback"], { tune: { controller: "PID" } });
   const column = textsOf("interaction", { plant: [["1/(s+1)", 0], [null, "2/(s+1)"]], controllers: [{ Kp: 1, Ti: 2 }, { Kp: 2, Ti: 3 }], pairing: [2, 1] });
   const { request } = readQuestion("interaction", column).question;
   assert.deepEqual(request["plant"], [["1/(s+1)", 0], [0, "2/(s+1)"]]);

@@ -1,6 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, dropFile, overflow, tracesShown, WINDOWS } from "../harness.mjs";
+
+import { stepTest } from "../step_record.mjs";
 
 const tests = browserTests();
 const { withPage, post } = tests;
@@ -13,6 +15,13 @@ const EXAMPLES = [
   ["interaction", "Wood and Berry's column", { "Set-point step 1": 8, "Load at the plant input 2": 8, "Sensitivity |S| of each loop": 6 }],
   ["predictor", "Long pipe", { "Set-point step": 4, "Load at the plant input": 4, "Sensitivity |S| of each loop": 2 }],
 ];
+
+/** The request of the first example. */
+const FURNACE = {
+  inner: { plant: "2 e^(-s)/(4s+1)", tune: { controller: "PI", Ms: 1.4 } },
+  outer: { plant: "1.5 e^(-8s)/(30s+1)", tune: { controller: "PID", Ms: 1.4 } },
+  limits: { Ms_valve: 1.6 },
+};
 
 /** Luyben's settings, which are judged faster than a design is found. */
 const GIVEN = new URLSearchParams({
@@ -49,7 +58,7 @@ test("each example is one click away, and what is shown is what the service answ
       assert.equal(await page.title(), "Structure · Tunewright");
       assert.deepEqual(await accessibilityViolations(page), [], id);
     }
-    const answer = await post("v1/cascade", { inner: { plant: "2 e^(-s)/(4s+1)", tune: { controller: "PI", Ms: 1.4 } }, outer: { plant: "1.5 e^(-8s)/(30s+1)", tune: { controller: "PID", Ms: 1.4 } }, limits: { Ms_valve: 1.6 } });
+    const answer = await post("v1/cascade", FURNACE);
     const row = await figure(page, "IAE after a load at the valve (s)").innerText();
     assert.ok(row.includes(three(answer.performance.inner_load.IAE)) && row.includes(three(answer.single.performance.inner_load.IAE)), row);
     const typing = await page.getByRole("region", { name: "Settings to type" }).innerText();
@@ -118,10 +127,13 @@ test("a given controller begins with the designed settings; faults stand at thei
     {},
     async (page) => {
       await verdict(page).waitFor();
+      const { outer } = await post("v1/cascade", FURNACE);
+      const five = (value) => Number(value.toPrecision(5));
+      const { Kp, Ti, Td, filter } = outer.controller;
       const given = answered(page, "cascade");
       await field(page, "Outer controller").selectOption("given");
-      assert.match(await field(page, "Settings of the outer controller").inputValue(), /^Kp 0\.934\d+, Ti 18\.1\d+, Td 4\.35\d+, Tf 0\.435\d+$/);
-      assert.equal((await given).request().postDataJSON().outer.controller.Kp, 0.93488);
+      assert.equal(await field(page, "Settings of the outer controller").inputValue(), `Kp ${five(Kp)}, Ti ${five(Ti)}, Td ${five(Td)}, Tf ${five(filter.Tf)}`);
+      assert.equal((await given).request().postDataJSON().outer.controller.Kp, five(Kp));
       await field(page, "Settings of the outer controller").fill("Kp 5, Ti 10");
       await page.keyboard.press("Tab");
       await page.locator('.verdict.bad h2[data-code="unstable"]').waitFor();
@@ -220,7 +232,7 @@ test("three loops: the matrix has a plant for each pair, and the pairing is a ch
     await page.locator('.structure-controls input[aria-invalid="true"]').waitFor();
     assert.equal(await field(page, "Peak mu of all loops").getAttribute("aria-invalid"), "true");
     await field(page, "Loops").selectOption("3");
-    assert.equal(await page.locator(".block.matrix input").count(), 9);
+    assert.equal(await page.locator(".block.matrix input[type=text]").count(), 9);
     assert.equal(await field(page, "y1 from u1").inputValue(), "12.8 e^(-s)/(16.7s+1)");
     assert.equal(await page.locator('.block.matrix input[aria-invalid="true"]').count(), 5);
     },
@@ -261,12 +273,33 @@ test("the program runs call by call with limits, next to the design", async () =
     await page.getByRole("heading", { name: "Set-point step, size 3" }).waitFor();
     await tracesShown(page, "Set-point step, size 3", 4);
     await tracesShown(page, "Load at the valve", 10);
-    const request = { sampled: { sample_time: 1, u_max: 0.6, steps: { setpoint: 3 } }, inner: { plant: "2 e^(-s)/(4s+1)", tune: { controller: "PI", Ms: 1.4 } }, outer: { plant: "1.5 e^(-8s)/(30s+1)", tune: { controller: "PID", Ms: 1.4 } }, limits: { Ms_valve: 1.6 } };
-    const { sampled } = await post("v1/cascade", request);
+    const { sampled } = await post("v1/cascade", { ...FURNACE, sampled: { sample_time: 1, u_max: 0.6, steps: { setpoint: 3 } } });
     const table = page.locator(".structure-tables .card").filter({ has: page.getByRole("heading", { name: "Call by call, with limits" }) });
     assert.ok((await table.innerText()).includes(three(sampled.Ms.valve)));
     assert.deepEqual(await accessibilityViolations(page), []);
   });
+});
+
+test("the file of a test becomes a plant: dropped on its block, or chosen", async () => {
+  await withPage(
+    "#/structure/cascade",
+    {},
+    async (page) => {
+      await verdict(page).waitFor();
+      const outer = answered(page, "cascade", (request) => request.outer.plant !== FURNACE.outer.plant);
+      await dropFile(page, ".block.P1 .plant-line", "tic.csv", stepTest);
+      const [, K, L, T] = /^([\d.]+) e\^\(-([\d.]+) s\)\/\(([\d.]+) s \+ 1\)$/.exec((await outer).request().postDataJSON().outer.plant);
+      assert.ok(Math.abs(K - 2) < 0.02 && Math.abs(L - 5) < 0.2 && Math.abs(T - 30) < 0.5, `${K} ${L} ${T}`);
+      await page.getByText(/tic\.csv, fit 9\d|tic\.csv, fit 100/).waitFor();
+      await page.getByText("These results belong").waitFor({ state: "hidden" });
+      const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.getByRole("button", { name: "CSV of a test: Inner plant, from the valve to y2" }).click()]);
+      await chooser.setFiles({ name: "fic.csv", mimeType: "text/csv", buffer: Buffer.from("not a test") });
+      await page.locator(".block.P2 .formula .error").waitFor();
+      assert.equal(await field(page, "Inner plant, from the valve to y2").inputValue(), FURNACE.inner.plant);
+      assert.deepEqual(await accessibilityViolations(page), []);
+    },
+    ["422", "400"],
+  );
 });
 
 test("a job opens with its answer and without another design, and a change makes it a question of its own", async () => {

@@ -37,14 +37,14 @@ interface Wire {
   arrow: boolean;
 }
 
-const BLOCK_HEIGHT = 122;
+const BLOCK_HEIGHT = 128;
 const WIDE_BLOCK = 190;
 /** In a turned diagram, where the blocks share the width. */
 const NARROW_BLOCK = 120;
 const MAX_TURNED_BLOCK = 260;
 const TURNED_GAP = 28;
 /** A matrix of plants: its columns and rows. */
-const CELL: Place = [206, 112];
+const CELL: Place = [206, 120];
 const SUM = 11;
 const MAX_GAP = 46;
 const MIN_GAP = 25;

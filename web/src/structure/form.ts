@@ -221,8 +221,8 @@ export function structureForm(errors: FormErrors, onChange: (held: boolean) => v
     const inside = spec.fields.map((key) => parts.get(key)!);
     const content =
       spec.id === "matrix"
-        ? inside.map((part) => h("div", { class: "cell" }, h("p", {}, part.spec.label), part.element))
-        : [h("p", { class: "block-title" }, spec.title), h("div", { class: "block-fields" }, inside.map(({ element }) => element)), shown];
+        ? inside.map((part) => h("div", { class: "cell" }, h("div", { class: "block-head" }, h("p", {}, part.spec.label), part.plant?.choose), part.element))
+        : [h("div", { class: "block-head" }, h("p", { class: "block-title" }, spec.title), inside.map(({ plant }) => plant?.choose)), h("div", { class: "block-fields" }, inside.map(({ element }) => element)), shown];
     const element = h("div", { class: `block ${spec.id}`, role: "group", "aria-label": spec.title, "data-size": texts["size"] }, content);
     return { spec, element, shown };
   }

@@ -10,7 +10,7 @@ import { copyButton } from "../views/copy.ts";
 import { figuresTable } from "../views/figures_table.ts";
 import { withMinus, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
-import { conclusionWords, settingLines, settingsOfAnswer } from "../words/structure.ts";
+import { conclusionWords, nameOfDesign, settingLines, settingsOfAnswer } from "../words/structure.ts";
 import type { StructureDocuments } from "./documents.ts";
 import type { OwnSettings } from "./own_settings.ts";
 import type { BlockSettings } from "../words/structure.ts";
@@ -32,6 +32,12 @@ export interface StructureResult {
 /** Of the steps of the run call by call. */
 const sizesOf = ({ sampled }: StructureRequest): Record<string, number> => (sampled as { steps?: Record<string, number> } | undefined)?.steps ?? {};
 
+/** Why there is no controller to compare with. */
+function missingComparisons(answer: StructureAnswer): string[] {
+  const why = ("why_null" in answer && answer.why_null) || {};
+  return ["single", "pid"].flatMap((of) => (why[of] ? [`No ${nameOfDesign(of)}: ${why[of]}`] : []));
+}
+
 const NO_REMARKS = "There are no remarks on this answer.";
 
 export function structureResult(announce: (sentence: string) => void, documents: StructureDocuments, own: OwnSettings): StructureResult {
@@ -51,7 +57,7 @@ export function structureResult(announce: (sentence: string) => void, documents:
     verdict.className = `verdict ${head ? LEVEL_CLASS[head.level] : ""}`;
     verdict.replaceChildren(
       h("h2", { "data-code": head?.code }, withMinus(head?.text ?? NO_REMARKS)),
-      ...[...new Set(Object.values(("why_null" in answer && answer.why_null) || {}))].map((why) => h("p", {}, why)),
+      ...missingComparisons(answer).map((why) => h("p", {}, why)),
       ...rest.map(({ code, level, text }) => h("p", { class: LEVEL_CLASS[level], "data-code": code }, withMinus(text))),
     );
   }

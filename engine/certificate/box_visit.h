@@ -2,8 +2,10 @@
 //
 // 1. 1/ki, and the frequency that came nearest for the parent.
 // 2. All frequencies: forbidden discs, and |1/D| on the axis.
-// 3. |1/D| in the right half-plane; Newton's method for a pole of the centre there, then |1/D| at it and the whole axis.
-// 4. If no such pole is found: the harmonics of each sign function, and the linear program with the limits' half-planes.
+// 3. |1/D| in the right half-plane; Newton's method for a pole of the centre there, then |1/D| at it and the whole
+// axis.
+// 4. If no such pole is found: the harmonics of each sign function, and the linear program with the limits'
+// half-planes.
 #pragma once
 
 #include <complex>
@@ -32,11 +34,11 @@ struct SearchData {
 
 struct BoxOutcome {
     bool closed = false;
-    CertificateLeaf leaf;      ///< the reason; of an open box its best bound
-    double bound = 0;          ///< of an open box
-    int hint = -1;             ///< the frequency that came nearest
-    int axis = 0;              ///< the unknown to split
-    bool wants_phi = false;    ///< a sign function of the centre may close it
+    CertificateLeaf leaf;    ///< the reason; of an open box its best bound
+    double bound = 0;        ///< of an open box
+    int hint = -1;           ///< the frequency that came nearest
+    int axis = 0;            ///< the unknown to split
+    bool wants_phi = false;  ///< a sign function of the centre may close it
 };
 
 /// Arrays of one visit, to be used again.

@@ -116,7 +116,8 @@ private:
         parallel_for(control_.spread, static_cast<int>(batch.size()), [&](int i) {
             const auto at = static_cast<std::size_t>(i);
             const OpenBox& open = batch[at];
-            outcome[at] = visit_box(data_, check_, nodes_[static_cast<std::size_t>(open.node)].box, open.hint, spaces_[at]);
+            outcome[at] =
+                visit_box(data_, check_, nodes_[static_cast<std::size_t>(open.node)].box, open.hint, spaces_[at]);
         });
         bool added = false;
         for (std::size_t i = 0; i < batch.size(); ++i) {
@@ -228,10 +229,12 @@ Error wrong(const std::string& where, const std::string& message) {
 
 std::optional<Error> fault_of(const CertificateProblem& problem, const CertifyOptions& options) {
     if (!(problem.Ms > 1) || !(problem.Mt > 1)) return wrong("Ms", "Ms and Mt must be above 1.");
-    if (!(problem.design[1] > 0)) return wrong("controller", "The design must have integral action of the plant's sign.");
+    if (!(problem.design[1] > 0))
+        return wrong("controller", "The design must have integral action of the plant's sign.");
     if (problem.structure == CertifiedStructure::pid_tied && !(problem.design[2] > 0))
         return wrong("controller", "Td of the design must be above 0.");
-    if (!(problem.upper > 0) || !std::isfinite(problem.upper)) return wrong("controller", "The design has no finite IAE.");
+    if (!(problem.upper > 0) || !std::isfinite(problem.upper))
+        return wrong("controller", "The design has no finite IAE.");
     if (!(options.gap > 0) || !(options.gap < 1)) return wrong("gap", "The gap must be between 0 and 1.");
     if (options.reach && !(*options.reach > 1)) return wrong("reach", "The reach must be above 1.");
     return std::nullopt;
@@ -270,7 +273,8 @@ Expected<CertificateProblem> certificate_problem(const LinearPlant& plant, const
     const auto unsupported = [](const std::string& message) {
         return Error{.kind = ErrorKind::unsupported, .where = "controller", .message = message};
     };
-    if (plant.integrators() < 0) return unsupported("The plant has a zero at s = 0; integral action cannot remove a load.");
+    if (plant.integrators() < 0)
+        return unsupported("The plant has a zero at s = 0; integral action cannot remove a load.");
     if (!design.has_integral()) return unsupported("The design has no integral action, so its IAE is unbounded.");
     const bool filtered = design.filter.type == FilterType::measurement_second_order;
     if (!filtered && design.filter.type != FilterType::none)

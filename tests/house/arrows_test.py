@@ -26,7 +26,7 @@ ROOMS = {
         "identification": {"simulation", "loop", "plant", "controller", "numerics"},
         "evaluation": {"simulation", "loop", "plant", "controller", "numerics"},
         "certificate": {"simulation", "loop", "plant", "controller", "numerics"},
-        "tuning": {"evaluation", "reduction", "simulation", "loop", "plant", "controller", "numerics"},
+        "tuning": {"certificate", "evaluation", "reduction", "simulation", "loop", "plant", "controller", "numerics"},
         "check": {"identification", "simulation", "loop", "plant", "controller", "numerics"},
         "structure": {"blocks", "code", "tuning", "evaluation", "simulation", "loop", "plant", "controller", "numerics"},
         "range": {"tuning", "evaluation", "simulation", "loop", "plant", "controller", "numerics"},

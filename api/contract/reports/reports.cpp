@@ -39,7 +39,8 @@ ReportContract cost_surface_report() {
 
 const std::vector<ReportContract>& report_contracts() {
     static const std::vector<ReportContract> contracts = {
-        cost_surface_report(), frontier_report(), rimc_report(), tradeoff_report(), emulation_report(),
+        cost_surface_report(), certificate_report(), frontier_report(),
+        rimc_report(),         tradeoff_report(),    emulation_report(),
     };
     return contracts;
 }

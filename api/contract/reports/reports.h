@@ -32,6 +32,7 @@ ReportContract report_contract(std::string field, const Description<Report>& des
 }
 
 ReportContract cost_surface_report();
+ReportContract certificate_report();
 ReportContract frontier_report();
 ReportContract rimc_report();
 ReportContract tradeoff_report();

@@ -251,6 +251,9 @@ SampledStep sized(SampledStep step, const std::map<std::string, double>& sizes) 
     return step;
 }
 
+/// A run that was stopped has no figures: it may have made no call.
+Error stopped() { return {ErrorKind::cancelled, "", "The run was stopped."}; }
+
 }  // namespace
 
 Expected<SampledAnswer> run_sampled(const code::Program& program, const SampledScene& scene,
@@ -262,15 +265,18 @@ Expected<SampledAnswer> run_sampled(const code::Program& program, const SampledS
     SampledAnswer out;
     for (const SampledPlace& place : scene.places) {
         SampledStructureRun run(program, scene, {place.name, place.inputs}, &place);
-        out.Ms[place.name] = run.settles(control)
+        const bool settles = run.settles(control);
+        if (control.stop.stop_requested()) return stopped();
+        out.Ms[place.name] = settles
                                  ? Figure(run.peak())
                                  : no_figure("The sampled loop is not stable, or is not at rest after 40000 calls.");
     }
     for (const SampledStep& step : scene.steps) {
         SampledStructureRun run(program, scene, sized(step, sizes), nullptr);
-        out.responses.push_back(run.response(run.settles(control)));
+        const bool settles = run.settles(control);
+        if (control.stop.stop_requested()) return stopped();
+        out.responses.push_back(run.response(settles));
     }
-    out.partial = control.stop.stop_requested();
     return out;
 }
 

@@ -60,7 +60,6 @@ struct SampledResponse {
 struct SampledAnswer {
     std::map<std::string, Figure> Ms;  ///< at each place
     std::vector<SampledResponse> responses;
-    bool partial = false;  ///< stopped
 };
 
 /// `sizes`: of steps by their names, 1 for the others; once a limit is reached responses are not proportional to them.

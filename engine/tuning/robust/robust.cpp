@@ -1,4 +1,5 @@
 #include "engine/tuning/robust/robust.h"
+#include "engine/tuning/robust/certified.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,6 +102,14 @@ std::optional<Error> without_optimum(const DesignProblem& problem) {
         "Fix the filter time constant Tf, or give the plant its dead time; a single design may limit Mks instead."};
 }
 
+OptionSet<CertifyWish> certify_options() {
+    OptionSet<CertifyWish> set;
+    set.field(&CertifyWish::gap, "gap",
+              "The proof is complete when no controller of the root box has a load IAE lower by more than this share.",
+              {.minimum = 0.0005, .maximum = 0.5});
+    return set;
+}
+
 OptionSet<RobustFilterOptions> filter_options() {
     using O = RobustFilterOptions;
     OptionSet<O> set;
@@ -156,6 +165,7 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustO
     result.partial = found->stopped;
     if (with_surface) result.report = std::make_shared<CostSurface>(surface);
     add_warnings(result, problem, found->x);
+    add_certificate(problem, options, std::exp(found->log_cost), control, result);
     return result;
 }
 
@@ -254,6 +264,9 @@ OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
                    " Td with a dead time, a right-half-plane zero or "
                    "pole excess >= 3, else Tf = 0.05 times the sum of the lags minus the leads. PI default: none.",
                filter_options(), 1);
+    set.object(&O::certify, "certify",
+               "Also prove how much better any controller within the limits could be: the answer has a certificate.",
+               certify_options());
     add_sliders(set.main({"Ms", "Mt", "Mks"}));
     return set;
 }

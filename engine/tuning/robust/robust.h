@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/certificate/certificate.h"
 #include "engine/tuning/limits.h"
 #include "engine/tuning/method/method_report.h"
 #include "engine/tuning/method/rule.h"
@@ -13,6 +14,11 @@
 #include "engine/tuning/robust/filter_rule.h"
 
 namespace tunewright {
+
+/// A proof of the optimum, if it is asked for (certificate/certificate.h).
+struct CertifyWish {
+    std::optional<double> gap = {};  ///< the proof that no controller has an IAE lower by more than this share
+};
 
 struct RobustOptions {
     ControllerKind controller = ControllerKind::PID;          ///< PI or PID
@@ -24,6 +30,7 @@ struct RobustOptions {
     robust::SearchKind search = robust::SearchKind::fast;
     bool surface = false;  ///< also return the cost over the (Ti, Td) plane
     RobustFilterOptions filter = {};
+    CertifyWish certify = {};
 };
 
 /// The design on the ideal law.
@@ -37,6 +44,12 @@ Expected<DeviceDesign> tune_robust_for_device(const TuningProblem& tuning, const
                                               const device::DeviceModel& device, const RunControl& control);
 
 TuningMethod robust_method();
+
+/// The method's report with `certify`.
+struct CertificateReport : MethodReport {
+    Certificate certificate;
+    double seconds = 0;  ///< of computing; 0: not measured
+};
 
 /// The method's report with `surface`: the least cost over all Kp; cost[i][j] belongs to Ti[i] (time) and Td[j] (time).
 /// Empty: no Kp keeps the limits.

@@ -82,8 +82,9 @@ std::variant<SampledView, Problem> run_program(const StructureRequest& request, 
     for (const code::Declaration& output : code::of_role(program, code::VariableRole::output))
         out.names.push_back(output.name);
     auto run = structure::run_sampled(program, plants->scene, request.sampled->steps, control);
-    if (!run) return run.error().kind == ErrorKind::cancelled ? to_problem(run.error())
-                                                              : below_sampled(to_problem(run.error()));
+    if (!run)
+        return run.error().kind == ErrorKind::cancelled ? to_problem(run.error())
+                                                        : below_sampled(to_problem(run.error()));
     out.answer = std::move(*run);
     return out;
 }

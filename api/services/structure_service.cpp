@@ -166,11 +166,13 @@ double cost_of(const structure::InteractionFigures& figures, const InteractionRe
     return sum;
 }
 
-/// The place of the requested pairing; that of the best one if none is requested.
+/// The place of the requested pairing. Without one given controllers act on the input of their own number, and a design
+/// takes the best.
 std::size_t chosen_pairing(const structure::GainAnalysis& gains, const InteractionRequest& request) {
-    if (!request.pairing) return 0;
-    std::vector<int> wanted = *request.pairing;
-    for (int& input : wanted) --input;
+    const bool given = !request.controllers.given.empty() || request.baseline;
+    if (!request.pairing && !given) return 0;
+    std::vector<int> wanted(request.plant.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = request.pairing ? (*request.pairing)[i] - 1 : int(i);
     return std::size_t(std::ranges::find(gains.pairings, wanted, &structure::Pairing::input_of) -
                        gains.pairings.begin());
 }

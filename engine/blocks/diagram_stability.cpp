@@ -1,6 +1,6 @@
 #include "engine/blocks/diagram_stability.h"
 
-#include <Eigen/LU>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,12 +21,15 @@ constexpr double kAxisDistance = 1e-10;  // |g| relative to its size nearby: clo
 constexpr double kLowest = 1e-6;         // of the reference frequency: g hardly differs from its value at 0 there
 constexpr double kFirstStep = 1.05, kMostGrowth = 1.5, kClosest = 1e-12;  // ratios of frequencies
 constexpr double kTurnOfDeadTime = 0.5;  // rad of all dead times together in one step, while the loops have gain
-constexpr double kSmallGain = 0.25;      // spectral radius of |M|: below it the rest of the axis turns g no further
-constexpr double kBetweenLooks = 1.5;    // ratio of the frequencies at which that radius is computed
-constexpr double kBetweenTurns = 1.1;    // the same for the dead times that turn g
-constexpr double kLittle = 0.05;         // share of g that a block contributes: its dead time turns nothing
-constexpr double kNeutral = 1;           // the same of the direct terms
-constexpr double kMostFrequency = 1e9;   // of the reference frequency
+constexpr double kSmallGain = 0.97;      // spectral radius of |M|: below 1 from there on, no factor 1 - M crosses 0
+constexpr double kHigher = 1.6;          // ratio of the frequencies above at which the radius must stay below 1
+constexpr int kMostHigher = 24;
+constexpr int kMostSteps = 200'000;     // beyond that nothing is known, which counts as not stable
+constexpr double kBetweenLooks = 1.5;   // ratio of the frequencies at which that radius is computed
+constexpr double kBetweenTurns = 1.1;   // the same for the dead times that turn g
+constexpr double kLittle = 0.05;        // share of g that a block contributes: its dead time turns nothing
+constexpr double kNeutral = 1;          // the same of the direct terms
+constexpr double kMostFrequency = 1e9;  // of the reference frequency
 constexpr int kMostNewton = 40;
 constexpr double kNearCancelled = 1e-4;  // of 1/time_scale
 
@@ -49,7 +52,14 @@ public:
     Complex at(double omega) const { return at(Complex(right_of_, omega)); }
     Complex start(double omega) const { return at(Complex(right_of_ + omega)); }
     bool gain_is_small(double omega) const {
-        return spectral_radius(diagram_.connections({right_of_, omega}).cwiseAbs()) < kSmallGain;
+        if (!(gain(omega) < kSmallGain)) return false;
+        constexpr double kStillSmall = 0.5 * (1 + kSmallGain);
+        for (const Block& block : diagram_.blocks())
+            for (const Complex pole : block.plant.poles())
+                if (std::abs(pole) > omega && !(gain(std::abs(pole)) < kStillSmall)) return false;
+        for (int i = 0; i < kMostHigher; ++i)
+            if (!(gain(omega *= kHigher) < kStillSmall)) return false;
+        return true;
     }
     /// The dead times that turn g: a block of gain M from j to i contributes the share M H_ji. That of a slow outer
     /// loop is negligible over most of the frequencies of a fast inner one.
@@ -61,11 +71,13 @@ public:
                 if (std::abs(block.plant.at(s) * diagram_.response(s, block.to)[block.from]) > kLittle) sum += L;
         return sum;
     }
-    /// From a frequency with a small gain to infinity: no factor turns by more than half a turn there.
+    /// From a frequency with a small gain to infinity: each factor 1 - eigenvalue of M stays right of 0, so that it has
+    /// turned back when M has become 0.
     double rest_of_turn(double omega) const {
         const Complex s(right_of_, omega), to_a = s + a_;
-        const auto n = diagram_.signals();
-        double angle = std::arg(Eigen::MatrixXcd(SignalMatrix::Identity(n, n) - diagram_.connections(s)).determinant());
+        double angle = 0;
+        const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> of_M(Eigen::MatrixXcd(diagram_.connections(s)), false);
+        for (const Complex value : of_M.eigenvalues()) angle += std::arg(1.0 - value);
         for (const Block& block : diagram_.blocks()) {
             if (block.cancelled) continue;
             for (int i = 0; i < block.plant.integrators(); ++i) angle += std::arg(s / to_a);
@@ -75,6 +87,8 @@ public:
     }
 
 private:
+    double gain(double omega) const { return spectral_radius(diagram_.connections({right_of_, omega}).cwiseAbs()); }
+
     const BlockDiagram& diagram_;
     double a_, right_of_;
     int order_;
@@ -118,7 +132,9 @@ StabilityCount count_unstable_poles(const BlockDiagram& diagram, double right_of
     Winding winding(start);
     winding.follow(here);
     double looked_at = reference, turned_at = omega, dead_time = diagram.total_dead_time();
+    int steps = 0;
     for (bool small = false; !small;) {
+        if (++steps > kMostSteps) return {.unstable_poles = -1};
         const Complex there = g.at(next);
         if (!follow(g, winding, omega, here, next, there)) return {.on_the_boundary = true};
         omega = next;

@@ -204,12 +204,12 @@ Expected<LinearPlant> rough_outer_plant(const CascadePlants& plants, const Ideal
     const auto closed = cascade_diagram(plants, inner, nullptr);
     if (!closed) return closed.error();
     const double h = 1e-4 / closed->diagram.time_scale();
-    const auto to_y1 = [&](double s) { return closed->diagram.response(s, closed->r2)[closed->y1].real(); };
+    const auto reached = [&](double s) { return closed->diagram.response(s, closed->r2)[closed->outer_input].real(); };
     Zpk plant = factors_of(plants.outer);
-    const double ratio = to_y1(h) / plants.outer.at(h).real();
+    const double ratio = reached(h);
     plant.K *= ratio;
-    // -d ln(to_y1/P1)/ds at 0: the delay that the inner loop adds.
-    const double delay = -std::log(to_y1(2 * h) / plants.outer.at(2 * h).real() / ratio) / h;
+    // Minus the slope of its logarithm at 0: the delay that the inner loop adds.
+    const double delay = -std::log(reached(2 * h) / ratio) / h;
     plant.L += std::max(0.0, delay);
     return LinearPlant::make(Plant(plant));
 }

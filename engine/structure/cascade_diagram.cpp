@@ -7,11 +7,11 @@
 namespace tunewright::structure {
 namespace {
 
-/// Plants and signals without controllers.
-void add_plants(CascadeDiagram& out, const CascadePlants& plants) {
+/// Plants and signals without controllers. An outer plant that is in no loop is left out: its poles are not the loop's.
+void add_plants(CascadeDiagram& out, const CascadePlants& plants, bool with_outer = true) {
     out.diagram.add(out.valve, out.y2, plants.inner);
     out.diagram.add(plants.arrangement == Arrangement::series ? out.y2 : out.valve, out.outer_input, 1);
-    out.diagram.add(out.outer_input, out.y1, plants.outer);
+    if (with_outer) out.diagram.add(out.outer_input, out.y1, plants.outer);
 }
 
 StructureView view_of(const std::string& of, const CascadeDiagram& all) {
@@ -39,7 +39,7 @@ Expected<CascadeDiagram> cascade_diagram(const CascadePlants& plants, const Idea
     if (!second) return at("inner/controller", second.error());
     out.valve = second->output;
     out.r2 = second->error;
-    add_plants(out, plants);
+    add_plants(out, plants, outer != nullptr);
     if (outer == nullptr) return out;
     const auto first = add_pid(diagram, to_parallel(*outer), out.y1);
     if (!first) return at("outer/controller", first.error());

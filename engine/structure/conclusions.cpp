@@ -37,6 +37,7 @@ constexpr CodeName kNames[] = {
     {feedforward_exact, "feedforward-exact"},
     {feedforward_pays, "feedforward-pays"},
     {feedforward_gains_little, "feedforward-gains-little"},
+    {feedforward_worse_than_none, "feedforward-worse-than-none"},
     {gain_alone_worse_than_none, "gain-alone-worse-than-none"},
     {peak_unavoidable, "peak-unavoidable"},
     {wrong_model_worse_than_none, "wrong-model-worse-than-none"},
@@ -89,17 +90,16 @@ Conclusions conclusions_on(const CascadeFigures& figures, const CascadeDesign& l
 }
 
 Conclusions conclusions_on(const LevelResult& result, const LevelProblem& problem) {
+    if (problem.flow && !result.Ms) return {{flow_loop_unstable, {}}};
     Conclusions out;
-    const LevelDesign& design = result.design;
-    if (above(design.highest, problem.allowed))
-        out.push_back({level_above_room, {{"highest", design.highest}, {"allowed", problem.allowed}}});
-    else if (design.rate_over_bound <= kNearLowestRate)
-        out.push_back({near_lowest_rate, {{"rate_over_bound", design.rate_over_bound}, {"at_most", kNearLowestRate}}});
-    if (!problem.flow) return out;
-    if (!result.Ms)
-        out.push_back({flow_loop_unstable, {}});
-    else
-        add_peak(out, flow_loop_too_slow, *result.Ms, limits::kDefaultMs);
+    const bool with_flow = problem.flow && result.highest;
+    const double highest = with_flow ? *result.highest : result.design.highest;
+    const double rate = with_flow ? *result.largest_rate / result.bound : result.design.rate_over_bound;
+    if (above(highest, problem.allowed))
+        out.push_back({level_above_room, {{"highest", highest}, {"allowed", problem.allowed}}});
+    else if (rate <= kNearLowestRate)
+        out.push_back({near_lowest_rate, {{"rate_over_bound", rate}, {"at_most", kNearLowestRate}}});
+    if (problem.flow) add_peak(out, flow_loop_too_slow, *result.Ms, limits::kDefaultMs);
     return out;
 }
 
@@ -119,9 +119,12 @@ Conclusions conclusions_on(const FeedforwardResult& result, const FeedforwardPro
         if (best->figures.IAE <= kExact * IAE_none)
             out.push_back({feedforward_exact, {}});
         else
-            out.push_back({gain >= kWorthwhile ? feedforward_pays : feedforward_gains_little, {{"gain", gain}}});
+            out.push_back({gain >= kWorthwhile ? feedforward_pays
+                           : gain >= 1         ? feedforward_gains_little
+                                               : feedforward_worse_than_none,
+                           {{"gain", gain}}});
         const double worst = std::ranges::max(best->IAE_if_wrong);
-        if (worst > IAE_none)
+        if (worst > IAE_none && gain >= 1)
             out.push_back(
                 {wrong_model_worse_than_none, {{"IAE", worst}, {"IAE_none", IAE_none}, {"wrong", problem.wrong}}});
     }

@@ -32,6 +32,7 @@ enum class ConclusionCode {
     feedforward_exact,  ///< the disturbance does not move y
     feedforward_pays,   ///< IAE: `gain` times less than without
     feedforward_gains_little,
+    feedforward_worse_than_none,  ///< `gain` is below 1
     gain_alone_worse_than_none,   ///< `IAE` exceeds `IAE_none`
     peak_unavoidable,             ///< `peak_bound`, of the `peak` without feedforward
     wrong_model_worse_than_none,  ///< with gains and dead times wrong by `wrong` the `IAE` exceeds `IAE_none`

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "engine/blocks/diagram_response.h"
 #include "engine/blocks/diagram_stability.h"
@@ -27,6 +29,23 @@ struct Diagram {
     int d = 0, y = 0, u = 0;
 };
 
+/// Both paths to y. Integrators that they share stand behind their sum: one of the disturbance alone would be in no
+/// loop.
+void add_paths(const LinearPlant& plant, const LinearPlant& disturbance, Diagram& out) {
+    const int shared = std::min(plant.integrators(), disturbance.integrators());
+    if (shared <= 0) {
+        out.blocks.add(out.u, out.y, plant);
+        out.blocks.add(out.d, out.y, disturbance);
+        return;
+    }
+    const int sum = out.blocks.add_signal();
+    out.blocks.add(out.u, sum, times_s(plant, shared));
+    out.blocks.add(out.d, sum, times_s(disturbance, shared));
+    out.blocks.add(sum, out.y,
+                   std::move(*LinearPlant::make(Plant(
+                       Zpk{.K = 1, .zeros = {}, .poles = std::vector<std::complex<double>>(std::size_t(shared))}))));
+}
+
 Expected<Diagram> diagram_of(const LinearPlant& plant, const LinearPlant& disturbance, const IdealPid& feedback,
                              const std::optional<Feedforward>& f) {
     Diagram out;
@@ -35,8 +54,7 @@ Expected<Diagram> diagram_of(const LinearPlant& plant, const LinearPlant& distur
     const auto loop = add_pid(out.blocks, to_parallel(feedback), out.y);
     if (!loop) return loop.error();
     out.u = loop->output;
-    out.blocks.add(out.u, out.y, plant);
-    out.blocks.add(out.d, out.y, disturbance);
+    add_paths(plant, disturbance, out);
     if (!f || f->Kf == 0) return out;
     if (f->Tp > 0)
         out.blocks.add(out.d, out.u,
@@ -167,6 +185,10 @@ std::optional<Error> refused(const FeedforwardProblem& problem) {
         return Error{ErrorKind::invalid_argument, "disturbance",
                      "Plant and disturbance differ in their integrators: no finite gain of the feedforward holds the "
                      "measurement. Give both with the same number of integrators."};
+    if (problem.disturbance.unstable_poles() > 0)
+        return Error{ErrorKind::unsupported, "disturbance",
+                     "The path of the disturbance is not stable by itself, and no controller of u changes that. Give a "
+                     "stable path, or one that integrates as the plant does."};
     if (!(problem.jump > 0))
         return Error{ErrorKind::invalid_argument, "jump", "The largest first move of u must be above 0."};
     const auto loop = diagram_of(problem.plant, problem.disturbance, problem.feedback, {});

@@ -1,5 +1,6 @@
 #include "engine/structure/level.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -7,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/blocks/diagram_response.h"
 #include "engine/loop/loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/number_text.h"
@@ -73,7 +75,8 @@ std::optional<Error> refused(const LevelProblem& problem) {
         return Error{ErrorKind::invalid_argument, "gap",
                      "gap is " + text(problem.gap) + "; it must be at least 0 and below the allowed deviation " +
                          text(problem.allowed) + "."};
-    if (problem.gap > 0 && problem.aim != LevelAim::no_overshoot && !problem.given)
+    const bool integrates = problem.given ? problem.given->Ti.has_value() : problem.aim != LevelAim::no_overshoot;
+    if (problem.gap > 0 && integrates)
         return Error{ErrorKind::invalid_argument, "gap",
                      "A gap is for proportional action alone; give the aim no_outflow_overshoot, or no gap."};
     if (problem.flow && !(problem.flow->T >= 0 && problem.flow->L >= 0))
@@ -94,6 +97,25 @@ Figure Ms_of(const LevelProblem& problem, const LevelDesign& design) {
     const auto loop = Loop::make(*linear, to_parallel(IdealPid{.Kp = design.Kc, .Ti = design.Ti}));
     if (const auto peaks = stable_peaks(loop)) return peaks->S.value;
     return no_figure("With this flow loop the level is not stable: allow it more room.");
+}
+
+/// The highest level and the largest rate of the outflow after the largest step, with the flow loop.
+void add_simulated(const LevelProblem& problem, LevelResult& out) {
+    out.highest = out.largest_rate =
+        no_figure(problem.gap > 0 ? "A controller with a gap is not simulated here." : out.Ms.why);
+    if (!out.Ms || problem.gap > 0) return;
+    const auto view = level_view(problem, out.design);
+    if (!view) return;
+    const NamedSignal &inflow = view->inputs.front(), &level = view->outputs.front(), &outflow = view->outputs.back();
+    const auto response = DiagramResponse::of(view->diagram, {{inflow.signal, problem.step}}, {});
+    if (!response) return;
+    double highest = 0, rate = 0;
+    for (const ResponseNode& node : response->pair(level.signal, outflow.signal, 0).nodes) {
+        highest = std::max(highest, node.y);
+        rate = std::max(rate, std::abs(node.u_slope));
+    }
+    out.highest = highest;
+    out.largest_rate = rate;
 }
 
 LevelDesign design_of(const LevelProblem& problem) {
@@ -130,6 +152,7 @@ Expected<LevelResult> design_level(const LevelProblem& problem) {
     out.bound = bound_of(problem);
     out.design = design_of(problem);
     out.Ms = Ms_of(problem, out.design);
+    add_simulated(problem, out);
     for (const double zeta : kFrontier) out.frontier.push_back(of_zeta(problem, zeta));
     out.frontier.push_back(judge_level(problem, gain_alone(problem), kInfinity));
     return out;

@@ -61,6 +61,7 @@ struct LevelResult {
     LevelDesign design;
     double bound = 0;                   ///< D^2/(2 A H)
     Figure Ms;                          ///< with the flow loop
+    Figure highest, largest_rate;       ///< with the flow loop, from a simulation
     std::vector<LevelDesign> frontier;  ///< over zeta, then proportional action alone
 };
 

@@ -1,5 +1,11 @@
 #include "engine/structure/loop_design.h"
 
+#include <utility>
+
+#include <complex>
+
+#include <algorithm>
+
 #include "engine/tuning/robust/robust.h"
 
 namespace tunewright::structure {
@@ -20,6 +26,12 @@ Zpk factors_of(const LinearPlant& plant) {
     for (int i = 0; i < plant.integrators(); ++i) out.poles.emplace_back(0);
     for (int i = 0; i > plant.integrators(); --i) out.zeros.emplace_back(0);
     return out;
+}
+
+LinearPlant times_s(const LinearPlant& plant, int n) {
+    Zpk out = factors_of(plant);
+    for (int i = 0; i < n; ++i) out.poles.erase(std::ranges::find(out.poles, std::complex<double>(0)));
+    return std::move(*LinearPlant::make(Plant(out)));
 }
 
 Zpk factors_of(const LinearPlant& first, const LinearPlant& second) {

@@ -22,6 +22,9 @@ Expected<IdealPid> robust_settings(const LinearPlant& plant, const LoopDesign& d
 /// Gain, zeros, poles and dead time of the plant, integrators included.
 Zpk factors_of(const LinearPlant& plant);
 
+/// The plant times s^n, n at most the number of its integrators.
+LinearPlant times_s(const LinearPlant& plant, int n);
+
 /// The product of two plants, without cancellation.
 Zpk factors_of(const LinearPlant& first, const LinearPlant& second);
 

@@ -10,6 +10,7 @@ namespace tunewright::api {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kLagPlant = R"("plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3})";
 
@@ -243,6 +244,32 @@ TEST(FrontierCall, RefusesWithPlaceAndCure) {
     const Answer backwards = frontier_call("{" + std::string(kLagPlant) + R"(, "Ms": {"from": 2, "to": 1.5}})", {});
     EXPECT_EQ(backwards.status, 422);
     EXPECT_THAT(backwards.body, HasSubstr("to must be > from"));
+}
+
+TEST(Design, ACertificateBoundsTheOptimum) {
+    for (const char* kind : {"PI", "PID"}) {
+        const Answer answer = design(R"("tune": [{"method": "robust", "controller": ")" + std::string(kind) +
+                                     R"(", "certify": {"gap": 0.01}}])");
+        ASSERT_EQ(answer.status, 200) << answer.body;
+        const Json live = Json::parse(answer.body);
+        expect_kept(live, "DesignAnswer");
+        const Json& certificate = live["controllers"][0]["certificate"];
+        EXPECT_EQ(certificate["complete"], true);
+        EXPECT_NEAR(certificate["gap"].get<double>(), 0.01, 1e-9);
+        const double IAE = live["controllers"][0]["performance"]["load"]["IAE"];
+        EXPECT_NEAR(certificate["upper"].get<double>() / IAE, 1, 1e-4);
+        EXPECT_GE(certificate["lower"].get<double>(), 0.99 * IAE * (1 - 1e-4));
+        EXPECT_LT(certificate["lower"].get<double>(), IAE);
+        EXPECT_EQ(certificate["root"]["high"].contains("Td"), kind == std::string("PID"));
+    }
+}
+
+TEST(Design, ACertificateThatCannotBeSaysWhy) {
+    const Answer answer = design(R"("tune": [{"method": "robust", "Mks": 5, "certify": {"gap": 0.01}}])");
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    EXPECT_THAT(answer.body, HasSubstr("not-certified"));
+    EXPECT_THAT(answer.body, Not(HasSubstr("\"certificate\"")));
+    EXPECT_THAT(design(R"("tune": [{"method": "robust", "certify": {"gap": 0}}])").body, HasSubstr("certify/gap"));
 }
 
 }  // namespace

@@ -25,15 +25,17 @@ Json corner_schema() {
 const Description<CertificateReport>& certificate_contract() {
     static const auto description = [] {
         using R = CertificateReport;
-        Description<R> d("Certificate",
-                         "A proof, with rounding, that no stable controller of the root box within the limits has a load "
-                         "IAE below `lower`: docs/proof.md.");
+        Description<R> d(
+            "Certificate",
+            "A proof, with rounding, that no stable controller of the root box within the limits has a load "
+            "IAE below `lower`: docs/proof.md.");
         const auto number = [](auto member) {
             return [member](const R& r, Writer& out) { out.number(r.certificate.*member); };
         };
         const SchemaOf plain = [](SchemaBook&) { return Json{{"type", "number"}}; };
-        d.field("upper", {}, [](const R& r, Writer& out) { out.number(r.certificate.problem.upper); }, plain,
-                "The load IAE of this controller, after a unit step.")
+        d.field(
+             "upper", {}, [](const R& r, Writer& out) { out.number(r.certificate.problem.upper); }, plain,
+             "The load IAE of this controller, after a unit step.")
             .field("lower", {}, number(&Certificate::lower), plain, "The proven bound.")
             .field("gap", {}, number(&Certificate::gap), plain, "(upper - lower)/upper.")
             .field(
@@ -75,7 +77,8 @@ const Description<CertificateReport>& certificate_contract() {
 }  // namespace
 
 ReportContract certificate_report() {
-    return report_contract("certificate", certificate_contract(), "With certify: how much better any controller could be.");
+    return report_contract("certificate", certificate_contract(),
+                           "With certify: how much better any controller could be.");
 }
 
 }  // namespace tunewright::api

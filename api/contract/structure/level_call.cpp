@@ -137,9 +137,14 @@ const Description<LevelAnswer>& level_answer_contract() {
             .field(
                 "robustness", {},
                 [](const A& a, Writer& out) {
-                    write_figures(out, {{"Ms", a.result.Ms}});
+                    write_figures(
+                        out,
+                        {{"Ms", a.result.Ms}, {"highest", a.result.highest}, {"largest_rate", a.result.largest_rate}});
                 },
-                [](SchemaBook&) { return figures_schema({"Ms"}); }, "With the flow loop.")
+                [](SchemaBook&) {
+                    return figures_schema({"Ms", "highest", "largest_rate"});
+                },
+                "With the flow loop, from a simulation: the highest level and the largest rate of the outflow.")
             .field(
                 "frontier", {},
                 [](const A& a, Writer& out) { list_of(answer(level_design_contract())).write(a.result.frontier, out); },

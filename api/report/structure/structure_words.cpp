@@ -58,6 +58,7 @@ constexpr Word kConclusions[] = {
     {"feedforward-exact", "With the exact model the disturbance does not move the measurement."},
     {"feedforward-pays", "Feedforward pays: the IAE is {gain} times less than with feedback alone."},
     {"feedforward-gains-little", "Feedforward gains little: the IAE is {gain} times less than with feedback alone."},
+    {"feedforward-worse-than-none", "Feedforward does harm: without it the IAE is {gain} times as large."},
     {"gain-alone-worse-than-none", "A gain alone is worse than no feedforward: IAE {IAE}, without it {IAE_none}."},
     {"peak-unavoidable",
      "The valve acts later than the disturbance: no feedforward keeps the error below {peak_bound}; without one it "

@@ -12,7 +12,8 @@ std::string why_not(const DesignProblem& problem, const RobustOptions& options) 
     if (problem.measured != nullptr) return "The plant is known by points of its frequency response alone.";
     if (!problem.others.empty()) return "The limits hold on several plants, and a certificate is about one.";
     if (options.objective != Objective::load_iae) return "A certificate is about the load IAE. Leave out objective.";
-    if (options.constraint != Constraint::circles) return "A certificate needs the circles of Ms and Mt. Leave out constraint.";
+    if (options.constraint != Constraint::circles)
+        return "A certificate needs the circles of Ms and Mt. Leave out constraint.";
     if (options.Mks) return "A certificate has no limit on max |C S|. Leave out Mks.";
     return {};
 }

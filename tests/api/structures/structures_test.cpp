@@ -222,7 +222,7 @@ TEST(FeedforwardCall, AnExactInverseAGivenCompensatorAndADesignedFeedback) {
         feedforward_call, with(feedforward(), "/controller", {{"Kf", 2}, {"Tz", 60}, {"Tp", 15}}), "FeedforwardAnswer");
     ASSERT_EQ(given["variants"].size(), 2u);
     EXPECT_EQ(given["variants"][1]["kind"], "given");
-    EXPECT_THAT(codes(given), testing::IsSupersetOf({"feedforward-gains-little", "wrong-model-worse-than-none"}));
+    EXPECT_THAT(codes(given), Contains("feedforward-worse-than-none"));
 }
 
 TEST(FeedforwardCall, ErrorsNameThePlaceAndTheCure) {

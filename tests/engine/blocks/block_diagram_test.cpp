@@ -186,6 +186,19 @@ TEST(DiagramResponse, ASignalThatIsOnlyRoundingCostsNoSteps) {
     for (const ResponseNode& node : nodes) EXPECT_NEAR(node.y, 0, 1e-12);
 }
 
+TEST(DiagramStability, DirectTermsBehindDeadTimesAreCounted) {
+    // C = Kp (1 + 1/(s Ti)) on a pure dead time: 1 + Kp e^(-Ls) has all zeros left of the axis for Kp < 1 alone.
+    for (const auto& [Kp, stable] : {std::pair{0.2, true}, {0.45, true}, {0.7, true}, {1.1, false}}) {
+        for (const double lag : {0.0, 1e-3}) {
+            BlockDiagram diagram;
+            const int y = diagram.add_signal();
+            const auto signals = add_pid(diagram, to_parallel(pi(Kp, 60)), y);
+            diagram.add(signals->output, y, first_order(1, lag, 15));
+            EXPECT_EQ(count_unstable_poles(diagram).stable(), stable) << Kp << " " << lag;
+        }
+    }
+}
+
 TEST(BlockDiagram, ADerivativeWithoutFilterIsRefused) {
     BlockDiagram diagram;
     const int y = diagram.add_signal();

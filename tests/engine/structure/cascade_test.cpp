@@ -207,5 +207,23 @@ TEST(CascadeDesign, ASingleLoopOnTheSamePlantsHasTheIntegralOfItsSettings) {
     EXPECT_NEAR(single->inner_load.IE, -single->controller.Ti / single->controller.Kp, 1e-6 * single->inner_load.IAE);
 }
 
+TEST(Cascade, AnOuterPlantThatIntegratesIsDesigned) {
+    // A level over a flow: the open outer plant is in no loop of the inner controller.
+    for (const auto arrangement : {Arrangement::series, Arrangement::parallel}) {
+        const CascadePlants plants{first_order(2, 4, 1),
+                                   *LinearPlant::make(Plant(Zpk{.K = 0.05, .zeros = {}, .poles = {0.0}, .L = 2})),
+                                   arrangement};
+        const auto found = design_cascade(plants, {}, {});
+        ASSERT_TRUE(found) << found.error().message;
+        EXPECT_TRUE(found->figures.stable);
+        EXPECT_LE(found->figures.Ms_inner, limits::kDefaultMs * (1 + 1e-5));
+        EXPECT_LE(found->figures.Ms_outer, limits::kDefaultMs * (1 + 1e-5));
+        // r2 comes to rest where u cancels the load: in a parallel cascade the inner gain, 2, stands between them.
+        const double IE =
+            (arrangement == Arrangement::series ? 1 : 2) * found->controllers.outer.Ti / found->controllers.outer.Kp;
+        EXPECT_NEAR(found->figures.outer_load.IE, -IE, 1e-5 * IE);
+    }
+}
+
 }  // namespace
 }  // namespace tunewright::structure

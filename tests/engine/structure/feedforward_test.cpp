@@ -120,5 +120,22 @@ TEST(Feedforward, AnUnstableLoopAndUnequalIntegratorsAreRefused) {
     EXPECT_EQ(result.error().where, "disturbance");
 }
 
+TEST(Feedforward, PlantAndDisturbanceMayBothIntegrate) {
+    const FeedforwardProblem problem{
+        .plant = *LinearPlant::make(Plant(Zpk{.K = 0.05, .zeros = {}, .poles = {0.0}, .L = 2})),
+        .disturbance = *LinearPlant::make(Plant(Zpk{.K = 0.05, .zeros = {}, .poles = {0.0}, .L = 3})),
+        .feedback = pi(3, 20)};
+    const auto found = design_feedforward(problem, {});
+    ASSERT_TRUE(found) << found.error().message;
+    // The valve is earlier: the inverse, a gain of 1 after 1, is exact.
+    EXPECT_LT(found->variants.back().figures.IAE, 1e-6 * found->variants.front().figures.IAE);
+    FeedforwardProblem unstable = problem;
+    unstable.plant = first_order(1, 5, 1);
+    unstable.disturbance = first_order(-1, -15, 0);
+    const auto refused = design_feedforward(unstable, {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().where, "disturbance");
+}
+
 }  // namespace
 }  // namespace tunewright::structure

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stop_token>
 
 #include "engine/loop/sampled/sampled_loop.h"
 #include "engine/simulation/sampled/sampled_response.h"
@@ -224,6 +225,19 @@ TEST(SampledStructure, ALoopThatIsNotStableHasNoPeak) {
     const auto late = run_sampled(*code::pid_algorithm(sampled_pi(0.1, 10, 1e-5), {}), loop_scene(plant), {}, {});
     ASSERT_FALSE(late);
     EXPECT_EQ(late.error().kind, ErrorKind::invalid_argument);
+}
+
+TEST(SampledStructure, ARunThatIsStoppedBeforeItsFirstCallHasNoFigures) {
+    const auto plant = first_order(2, 5, 1);
+    const auto program = level_program(sampled_pi(0.5, 5, 0.5), {});
+    ASSERT_TRUE(program);
+    std::stop_source source;
+    source.request_stop();
+    RunControl control;
+    control.stop = source.get_token();
+    const auto out = run_sampled(*program, loop_scene(plant), {}, control);
+    ASSERT_FALSE(out);
+    EXPECT_EQ(out.error().kind, ErrorKind::cancelled);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ const SENTENCES: Record<string, readonly [Finding["level"], string]> = {
   "flow-loop-unstable": ["bad", "With this flow loop the level is not stable."],
   "feedforward-exact": ["good", "The compensator is exact: the disturbance does not move y."],
   "feedforward-pays": ["good", "Feedforward pays. Without it the IAE after the disturbance is {gain} times as large."],
+  "feedforward-worse-than-none": ["bad", "Feedforward does harm. Without it the IAE after the disturbance is {gain} times as large."],
   "feedforward-gains-little": ["warning", "Feedforward gains little. Without it the IAE after the disturbance is {gain} times as large."],
   "gain-alone-worse-than-none": ["warning", "A gain alone would be worse than no feedforward: its IAE is {IAE}, without feedforward {IAE_none}."],
   "peak-unavoidable": ["note", "The valve acts later than the disturbance, so y reaches {peak_bound}{ y} with any compensator; without feedforward it reaches {peak}{ y}."],

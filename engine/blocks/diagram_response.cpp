@@ -24,11 +24,11 @@ constexpr double kOfRate = 0.1;        // first step times the fastest rate
 constexpr int kEchoes = 4, kEchoesOfMany = 3, kEchoesAtLowAccuracy = 2;
 constexpr std::size_t kMany = 4;  // delayed signals
 constexpr double kLowAccuracy = 1e-5;
-constexpr double kNearZero = 4e-5;    // frequency, of 1/time_scale, from which the values at 0 are extrapolated
-constexpr double kNoError = 1e-9;     // of the step: the error's final value
-constexpr int kIterations = 12;       // of a step that is longer than a dead time
-constexpr double kConverged = 1e-10;  // of the largest value
-constexpr double kOneLevel = 16;      // by which half the step lowers the error
+constexpr double kNearZero = 4e-5;   // frequency, of 1/time_scale, from which the values at 0 are extrapolated
+constexpr double kNoError = 1e-9;    // of the step: the error's final value
+constexpr int kIterations = 12;      // of a step that is longer than a dead time
+constexpr double kConverged = 1e-4;  // of the tolerance: change of the largest value in an iteration
+constexpr double kOneLevel = 16;     // by which half the step lowers the error
 constexpr double kUnbounded = 1e6;
 constexpr int kLookAtRounding = 16;  // steps between two looks at the parts of signals
 constexpr double kRounding = 1e-8;   // of those parts: a signal that is smaller counts as that large
@@ -275,7 +275,7 @@ private:
             const double change =
                 (node_ - last_).head(n).cwiseAbs().cwiseQuotient(largest_.cwiseMax(1e-300)).maxCoeff();
             last_ = node_;
-            if (change < kConverged) break;
+            if (change < kConverged * options_.tolerance) break;
             if (i + 1 == kIterations) return false;
         }
         z_.swap(next_);

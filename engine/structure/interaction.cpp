@@ -44,6 +44,9 @@ constexpr double kWeaker[] = {1, 0.7, 0.5, 0.35, 0.25, 0.15, 0.08};
 constexpr double kStartAbove = 1.2;  // mu of a start over its limit
 constexpr double kFaster = 3;        // factor of a start with one loop quick and the other slow
 constexpr double kTf_over_Td = 0.1;
+constexpr int kFirstIterations = 8;   // of every start, before the hopeless ones are dropped
+constexpr double kHopeless = 0.3;     // ln of cost behind the best start then
+constexpr double kSameValley = 0.02;  // ln of every setting between two starts then
 
 /// The loops of `closed`, of those there are.
 struct LoopsDiagram {
@@ -168,19 +171,23 @@ std::vector<double> grid_of(const PlantMatrix& plants, const Fineness& fineness)
     return frequencies_around(paths, kBelow, kAbove, fineness.per_decade, fineness.turn);
 }
 
-Peak mu_peak(const PlantResponses& plants, const std::vector<IdealPid>& controllers) {
+/// 1 where no peak is above `least`.
+Peak mu_peak(const PlantResponses& plants, const std::vector<IdealPid>& controllers, double least) {
     const auto gains = parallel(controllers);
     const auto peaks = local_peaks(
         plants.grid(),
-        [&, value = StructuredValues()](double omega, std::vector<double>& excess) mutable {
+        [&, value = StructuredValues(least)](double omega, std::vector<double>& excess) mutable {
             excess = {std::log(value(sensitivity(plants, gains, omega)))};
         },
-        -1);
+        std::log(least));
     Peak best{1, kInfinity};
     for (const LimitedPeak& peak : peaks)
         if (std::exp(peak.excess) > best.value) best = {std::exp(peak.excess), peak.omega};
     return best;
 }
+
+/// Lower peaks are not looked at where the highest one may be `mu`.
+double least_of(double mu) { return std::exp(kLeastPeak) * mu; }
 
 /// 20 log10 of max |W/(1 + W)|, W = det(I + P C) - 1: 1/(1 + W) is the determinant of S.
 double log_modulus(const PlantResponses& plants, const std::vector<IdealPid>& controllers) {
@@ -237,27 +244,31 @@ private:
     std::vector<IdealPid> start_;
 };
 
+/// Those of every search of one problem.
+struct Grids {
+    PlantResponses searched, judged;
+
+    explicit Grids(const PlantMatrix& plants)
+        : searched(plants, grid_of(plants, kSearched)), judged(plants, grid_of(plants, kJudged)) {}
+};
+
 class InteractionSearch {
 public:
-    InteractionSearch(const PlantMatrix& plants, const InteractionDesign& design, const std::vector<IdealPid>& start,
-                      const RunControl& control)
-        : plants_(plants),
-          responses_(plants, grid_of(plants, kSearched)),
-          fine_(plants, grid_of(plants, kJudged)),
-          design_(design),
-          settings_(start),
-          control_(control) {}
+    InteractionSearch(const PlantMatrix& plants, const Grids& grids, const InteractionDesign& design,
+                      const std::vector<IdealPid>& start)
+        : plants_(&plants), grids_(&grids), design_(&design), settings_(start) {}
 
-    LimitedResult run() const {
+    LimitedResult run(const VectorXd& from, const LimitedOptions& options) const {
         LimitedProblem problem;
         problem.stable = [&](const VectorXd& x) { return all_subsets_stable(settings_.at(x)); };
         problem.log_cost = [&](const VectorXd& x) { return log_cost(settings_.at(x)); };
         problem.peaks = [&](const VectorXd& x) {
             const auto gains = parallel(settings_.at(x));
             return local_peaks(
-                responses_.grid(),
-                [&, value = StructuredValues()](double omega, std::vector<double>& excess) mutable {
-                    excess = {std::log(value(sensitivity(responses_, gains, omega)) / design_.mu)};
+                grids_->searched.grid(),
+                [&, value = StructuredValues(least_of(design_->mu))](double omega,
+                                                                     std::vector<double>& excess) mutable {
+                    excess = {std::log(value(sensitivity(grids_->searched, gains, omega)) / design_->mu)};
                 },
                 kLeastPeak);
         };
@@ -265,29 +276,31 @@ public:
             return excess_at(parallel(settings_.at(x)), omega);
         };
         problem.resolved_excess = [&](const VectorXd& x) {
-            return std::vector{std::log(mu_peak(fine_, settings_.at(x)).value / design_.mu)};
+            return std::vector{
+                std::log(mu_peak(grids_->judged, settings_.at(x), least_of(design_->mu)).value / design_->mu)};
         };
-        const VectorXd start = settings_.of_start();
-        problem.low = start.array() - kMostMove;
-        problem.high = start.array() + kMostMove;
-        return search_within_limits(problem, start, {.stop = control_.stop});
+        problem.low = start().array() - kMostMove;
+        problem.high = start().array() + kMostMove;
+        return search_within_limits(problem, from, options);
     }
+
+    VectorXd start() const { return settings_.of_start(); }
 
     std::vector<IdealPid> controllers(const VectorXd& x) const { return settings_.at(x); }
 
 private:
     double excess_at(const std::vector<ParallelPid>& gains, double omega) const {
-        return std::log(structured_value(sensitivity(responses_, gains, omega)) / design_.mu);
+        return std::log(structured_value(sensitivity(grids_->searched, gains, omega)) / design_->mu);
     }
 
     bool all_subsets_stable(const std::vector<IdealPid>& controllers) const {
-        for (unsigned closed = all_loops(plants_); closed > 0; --closed)
-            if (!stable_with(plants_, controllers, closed)) return false;
+        for (unsigned closed = all_loops(*plants_); closed > 0; --closed)
+            if (!stable_with(*plants_, controllers, closed)) return false;
         return true;
     }
 
     double log_cost(const std::vector<IdealPid>& controllers) const {
-        const auto diagram = diagram_of(plants_, controllers, all_loops(plants_));
+        const auto diagram = diagram_of(*plants_, controllers, all_loops(*plants_));
         double sum = 0;
         for (const int load : diagram->u) sum += weighted_IAE(diagram->blocks, load, diagram->y);
         return std::log(sum);
@@ -296,15 +309,14 @@ private:
     double weighted_IAE(const BlockDiagram& blocks, int load, const std::vector<int>& outputs) const {
         double sum = 0;
         const std::vector<double> IAE = quick_IAEs(blocks, load, outputs);
-        for (std::size_t i = 0; i < IAE.size(); ++i) sum += (design_.weight.empty() ? 1 : design_.weight[i]) * IAE[i];
+        for (std::size_t i = 0; i < IAE.size(); ++i) sum += (design_->weight.empty() ? 1 : design_->weight[i]) * IAE[i];
         return sum;
     }
 
-    const PlantMatrix& plants_;
-    PlantResponses responses_, fine_;
-    const InteractionDesign& design_;
+    const PlantMatrix* plants_;
+    const Grids* grids_;
+    const InteractionDesign* design_;
     Settings settings_;
-    const RunControl& control_;
 };
 
 std::vector<IdealPid> with_kind(std::vector<IdealPid> controllers, bool derivative) {
@@ -317,16 +329,16 @@ std::vector<IdealPid> with_kind(std::vector<IdealPid> controllers, bool derivati
 }
 
 /// Weaker and weaker until mu holds; empty: never.
-std::optional<std::vector<IdealPid>> detuned(const PlantMatrix& plants, std::vector<IdealPid> controllers, double mu) {
+std::optional<std::vector<IdealPid>> detuned(const PlantMatrix& plants, const PlantResponses& responses,
+                                             std::vector<IdealPid> controllers, double mu) {
     const auto at_full = controllers;
-    const PlantResponses responses(plants, grid_of(plants, kSearched));
     for (const double weaker : kWeaker) {
         for (std::size_t i = 0; i < controllers.size(); ++i) {
             controllers[i].Kp = weaker * at_full[i].Kp;
             controllers[i].Ti = at_full[i].Ti / std::sqrt(weaker);
         }
         if (!stable_with(plants, controllers, all_loops(plants))) continue;
-        if (mu_peak(responses, controllers).value <= mu) return controllers;
+        if (mu_peak(responses, controllers, least_of(mu)).value <= mu) return controllers;
     }
     return std::nullopt;
 }
@@ -344,6 +356,54 @@ std::vector<std::vector<IdealPid>> starts_of(const std::vector<IdealPid>& first)
         out.push_back(std::move(start));
     }
     return out;
+}
+
+struct Valley {
+    InteractionSearch search;
+    LimitedResult found;
+
+    double merit() const { return merit_of(found.log_cost, found.excess); }
+    bool is_that_of(const Valley& other) const {
+        if (!std::isfinite(merit()) || !std::isfinite(other.merit())) return false;
+        const auto mine = parallel(search.controllers(found.x)),
+                   its = parallel(other.search.controllers(other.found.x));
+        for (std::size_t i = 0; i < mine.size(); ++i)
+            for (const auto of : {&ParallelPid::Kp, &ParallelPid::Ki, &ParallelPid::Kd})
+                if (mine[i].*of != its[i].*of && !(std::abs(std::log(mine[i].*of / its[i].*of)) < kSameValley))
+                    return false;
+        return true;
+    }
+};
+
+/// A few steps from every start; then to the end from those that are not far behind the best and not in the valley of a
+/// better one.
+std::vector<Valley> searched_valleys(const PlantMatrix& plants, const Grids& grids, const InteractionDesign& design,
+                                     const std::vector<IdealPid>& single, const RunControl& control) {
+    const auto starts = starts_of(single);
+    std::vector<std::optional<Valley>> first(starts.size());
+    parallel_for(control.spread, int(starts.size()), [&](int i) {
+        const auto start = detuned(plants, grids.searched, with_kind(starts[std::size_t(i)], design.derivative),
+                                   kStartAbove * design.mu);
+        if (!start) return;
+        const InteractionSearch search(plants, grids, design, *start);
+        const LimitedOptions few{.max_iterations = kFirstIterations, .max_rounds = 1, .stop = control.stop};
+        first[std::size_t(i)] = Valley{search, search.run(search.start(), few)};
+    });
+    std::vector<Valley> valleys;
+    for (auto& one : first)
+        if (one) valleys.push_back(std::move(*one));
+    std::ranges::stable_sort(valleys, {}, &Valley::merit);
+    std::vector<Valley> kept;
+    for (const Valley& one : valleys)
+        if (!(one.merit() > valleys.front().merit() + kHopeless) &&
+            std::ranges::none_of(kept, [&](const Valley& better) { return one.is_that_of(better); }))
+            kept.push_back(one);
+    parallel_for(control.spread, int(kept.size()), [&](int i) {
+        Valley& valley = kept[std::size_t(i)];
+        if (!std::isfinite(valley.merit()) || valley.found.stopped) return;
+        valley.found = valley.search.run(valley.found.x, {.curvature = valley.found.curvature, .stop = control.stop});
+    });
+    return kept;
 }
 
 /// The method robust for each loop alone.
@@ -410,11 +470,12 @@ Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const 
             out.IAE_setpoint[j][i] = (*moved)[i].IAE;
         }
     }
-    const PlantResponses responses(plants, grid_of(plants, kJudged));
-    const Peak peak = mu_peak(responses, controllers);
+    const Grids grids(plants);
+    const Peak near = mu_peak(grids.searched, controllers, least_of(1)),
+               peak = mu_peak(grids.judged, controllers, least_of(near.value));
     out.mu = peak.value;
     out.omega_mu = peak.omega;
-    out.log_modulus = log_modulus(responses, controllers);
+    out.log_modulus = log_modulus(grids.judged, controllers);
     return out;
 }
 
@@ -457,18 +518,14 @@ Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const 
     const auto single =
         luyben ? Expected<std::vector<IdealPid>>(luyben->controllers) : single_settings(plants, design.mu, control);
     if (!single) return single.error();
+    const Grids grids(plants);
     double least = kInfinity;
-    for (const auto& start : starts_of(*single)) {
-        const auto first = detuned(plants, with_kind(start, design.derivative), kStartAbove * design.mu);
-        if (!first) continue;
-        const InteractionSearch search(plants, design, *first, control);
-        const LimitedResult found = search.run();
-        out.partial = out.partial || found.stopped;
-        if (found.excess <= limits::kMaxRelativeExcessFound && found.log_cost < least) {
-            least = found.log_cost;
-            out.controllers = search.controllers(found.x);
+    for (const Valley& valley : searched_valleys(plants, grids, design, *single, control)) {
+        out.partial = out.partial || valley.found.stopped;
+        if (valley.found.excess <= limits::kMaxRelativeExcessFound && valley.found.log_cost < least) {
+            least = valley.found.log_cost;
+            out.controllers = valley.search.controllers(valley.found.x);
         }
-        if (found.stopped) break;
     }
     if (out.controllers.empty() && out.partial)
         return Error{ErrorKind::cancelled, "", "The search was stopped before it found settings."};
@@ -476,7 +533,7 @@ Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const 
         return Error{ErrorKind::no_feasible_controller, "limit/mu",
                      "No settings were found that keep mu within its limit with every loop stable; allow a larger mu, "
                      "or another pairing."};
-    if (const auto weaker = detuned(plants, *single, design.mu)) out.detuned = *weaker;
+    if (const auto weaker = detuned(plants, grids.searched, *single, design.mu)) out.detuned = *weaker;
     auto figures = judge_interaction(plants, out.controllers);
     if (!figures) return figures.error();
     out.figures = std::move(*figures);

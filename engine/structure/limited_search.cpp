@@ -24,7 +24,6 @@ constexpr double kHeld = 1e-6;     // ln: holds the limit
 constexpr int kCorrections = 4;    // steps back to the curved limits
 constexpr double kOfPeak = 1e-5;   // difference of x, for the gradient of a peak
 constexpr double kSlackSize = 60;  // bound of the elastic unknown
-constexpr int kRounds = 5;         // of searches with lower and lower limits: the second mostly suffices
 
 struct State {
     VectorXd x;
@@ -45,12 +44,14 @@ public:
     static constexpr bool kElastic = true;
 
     /// `margins`: ln by which each function must stay below its limit.
-    Search(const LimitedProblem& problem, const LimitedOptions& options, const std::vector<double>& margins)
+    Search(const LimitedProblem& problem, const LimitedOptions& options, const std::vector<double>& margins,
+           const MatrixXd& curvature)
         : problem_(problem),
           options_(options),
           margins_(margins),
           n_(problem.low.size()),
-          H_(optimise::kSqp.first_curvature * MatrixXd::Identity(n_, n_)) {}
+          H_(curvature.size() > 0 ? curvature : MatrixXd(optimise::kSqp.first_curvature * MatrixXd::Identity(n_, n_))) {
+    }
 
     LimitedResult run(const VectorXd& start) {
         State now = at(start);
@@ -60,7 +61,7 @@ public:
             optimise::minimise(*this, now, {.radius = 0.3, .min_radius = 1e-5, .max_radius = 1},
                                options_.max_iterations, options_.cost_tolerance);
         }
-        return {now.x, now.cost, now.excess, options_.stop.stop_requested()};
+        return {now.x, now.cost, now.excess, H_, options_.stop.stop_requested()};
     }
 
     /// The unknowns are p and the excess s that the linearised limits are allowed, at the price of the penalty.
@@ -91,7 +92,7 @@ public:
     double length(const Step& step) const { return step.p.cwiseAbs().maxCoeff(); }
     bool worth_trying(const State&, const Step&, double) const { return !options_.stop.stop_requested(); }
     bool accepted(const State&, double) const { return true; }
-    double merit(const State& state) const { return state.cost + kPenalty * std::max(0.0, state.excess); }
+    double merit(const State& state) const { return merit_of(state.cost, state.excess); }
 
     std::optional<State> candidate(const State& now, const Step& step, double radius) const {
         State next = corrected(now.x + step.p, 2 * radius);
@@ -183,17 +184,19 @@ private:
 
 }  // namespace
 
+double merit_of(double log_cost, double excess) { return log_cost + kPenalty * std::max(0.0, excess); }
+
 LimitedResult search_within_limits(const LimitedProblem& problem, const VectorXd& start,
                                    const LimitedOptions& options) {
     std::vector<double> margins(std::size_t(problem.functions), 0.0);
-    LimitedResult result = Search(problem, options, margins).run(start);
+    LimitedResult result = Search(problem, options, margins, options.curvature).run(start);
     for (int round = 1; std::isfinite(result.log_cost); ++round) {
         const bool held = result.excess <= kHeld;
         const std::vector<double> excess = problem.resolved_excess(result.x);
         result.excess = *std::ranges::max_element(excess);
-        if (!held || result.excess <= kHeld || result.stopped || round == kRounds) break;
+        if (!held || result.excess <= kHeld || result.stopped || round == options.max_rounds) break;
         for (std::size_t i = 0; i < margins.size(); ++i) margins[i] += std::max(0.0, excess[i]);
-        result = Search(problem, options, margins).run(result.x);
+        result = Search(problem, options, margins, result.curvature).run(result.x);
     }
     return result;
 }

@@ -44,15 +44,21 @@ struct LimitedResult {
     Eigen::VectorXd x;
     double log_cost = std::numeric_limits<double>::infinity();
     double excess = std::numeric_limits<double>::infinity();  ///< the largest resolved one; <= 0: all limits hold
+    Eigen::MatrixXd curvature;                                ///< of the Lagrangian, as the search has learnt it
     bool stopped = false;
 };
 
 struct LimitedOptions {
     int max_iterations = 40;
+    int max_rounds = 5;  ///< of searches with lower and lower limits: the second mostly suffices
     double cost_tolerance = 1e-5;
-    double difference = 2e-3;  ///< of x, for the gradient of the cost
+    double difference = 2e-3;        ///< of x, for the gradient of the cost
+    Eigen::MatrixXd curvature = {};  ///< where a search continues: that of its last result
     std::stop_token stop = {};
 };
+
+/// What the search lowers: the cost, and the excess at a price.
+double merit_of(double log_cost, double excess);
 
 /// `start` must be stable; it need not keep the limits. The result keeps them to 1e-6 of ln unless its `excess` says
 /// otherwise.

@@ -57,14 +57,23 @@ Vector balancing(const Matrix& S) {
     return d;
 }
 
-/// BFGS over d = ln D, whose last entry is kept: the function is convex there.
-double of_more(const Matrix& S, Vector& d) {
+/// Not below the largest singular value of D S D^-1: the root of the largest sums of a row and of a column.
+double bound(const Matrix& S, const Vector& d) {
+    const SmallReal size = scaled(S, d).cwiseAbs();
+    return std::sqrt(size.rowwise().sum().maxCoeff() * size.colwise().sum().maxCoeff());
+}
+
+/// BFGS over d = ln D, whose last entry is kept: the function is convex there. Ends at a value that is not above
+/// `least`.
+double of_more(const Matrix& S, Vector& d, double least) {
     if (d.size() != S.rows()) d = balancing(S);
+    if (const double value = bound(S, d); value <= least) return value;
+    const double log_least = std::log(least);
     const Index n = S.rows() - 1;
     Vector gradient, next_gradient;
     double value = log_value(S, d, gradient);
     SmallReal inverse = SmallReal::Identity(n, n);
-    for (int i = 0; i < kMostSteps; ++i) {
+    for (int i = 0; i < kMostSteps && value > log_least; ++i) {
         const Vector p = -inverse * gradient.head(n);
         const double slope = p.dot(gradient.head(n));
         if (!(slope < -kConverged)) break;
@@ -96,7 +105,7 @@ double structured_value(const Matrix& S) { return StructuredValues()(S); }
 double StructuredValues::operator()(const Matrix& S) {
     if (S.rows() == 1) return std::abs(S(0, 0));
     if (S.rows() == 2) return of_two(S);
-    return of_more(S, log_D_);
+    return of_more(S, log_D_, least_);
 }
 
 }  // namespace tunewright::structure

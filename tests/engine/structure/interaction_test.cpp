@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -346,6 +347,42 @@ TEST(StructuredPeak, ScaledRowsAndColumnsLeaveItAsItIs) {
         EXPECT_LE(value, S.operatorNorm() * (1 + 1e-12));
     }
     EXPECT_NEAR(structured_value(Eigen::Matrix3cd::Identity()), 1, 1e-12) << "equal singular values";
+}
+
+TEST(StructuredPeak, ValuesThatAreNotAboveTheLeastAreBoundsOfIt) {
+    RandomNumbers random(6);
+    constexpr double kLeast = 1.3;
+    StructuredValues bounded(kLeast);
+    int below = 0, above = 0;
+    for (int i = 0; i < 200; ++i) {
+        Eigen::Matrix3cd S;
+        for (auto& entry : S.reshaped()) entry = std::polar(random.log_uniform(0.05, 1.5), random.log_uniform(0.1, 6));
+        const double value = structured_value(S), found = bounded(S);
+        EXPECT_GE(found, value * (1 - 1e-6));
+        if (value > kLeast)
+            EXPECT_NEAR(found, value, 1e-5 * value);
+        else
+            EXPECT_LE(found, kLeast);
+        ++(value > kLeast ? above : below);
+    }
+    EXPECT_GT(std::min(above, below), 20);
+}
+
+TEST(Interaction, TheDesignDoesNotDependOnTheOrderOfItsParts) {
+    int parts = 0;
+    RunControl backwards;
+    backwards.spread = [&parts](int n, const std::function<void(int)>& f) {
+        parts += n;
+        for (int i = n; i-- > 0;) f(i);
+    };
+    const auto forwards = design_interaction(wood_berry(), {.mu = 1.8}, {});
+    const auto other = design_interaction(wood_berry(), {.mu = 1.8}, backwards);
+    ASSERT_TRUE(forwards && other);
+    EXPECT_GE(parts, 3) << "each start is a part";
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(forwards->controllers[i].Kp, other->controllers[i].Kp);
+        EXPECT_EQ(forwards->controllers[i].Ti, other->controllers[i].Ti);
+    }
 }
 
 TEST(Interaction, ARowWhosePlantsIntegrateIsStableAndHasTheIntegralOfItsLoop) {

@@ -30,9 +30,7 @@ void on_two_threads(int n, const std::function<void(int)>& f) {
     other.join();
 }
 
-double seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 Expected<CertificateProblem> problem_of(const nlohmann::json& row, const std::string& which) {
     const auto& given = row.at("plant");
@@ -42,8 +40,11 @@ Expected<CertificateProblem> problem_of(const nlohmann::json& row, const std::st
                                                           given.at("delay").get<double>(),
                                                           {}});
     if (!plant) return plant.error();
-    IdealPid pid{.Kp = best.at("K"), .Ti = best.at("Ti"), .Td = best.at("Td"), .b = 1, .c = 0, .filter = {}, .setpoint_lag = 0};
-    if (pid.Td > 0) pid.filter = {FilterType::measurement_second_order, which == "pid_td10" ? pid.Td / 10 : best.at("Tf").get<double>()};
+    IdealPid pid{
+        .Kp = best.at("K"), .Ti = best.at("Ti"), .Td = best.at("Td"), .b = 1, .c = 0, .filter = {}, .setpoint_lag = 0};
+    if (pid.Td > 0)
+        pid.filter = {FilterType::measurement_second_order,
+                      which == "pid_td10" ? pid.Td / 10 : best.at("Tf").get<double>()};
     return certificate_problem(*plant, pid, 1.4, 1.4, best.at("IAE"));
 }
 
@@ -89,16 +90,17 @@ int main(int argc, char** argv) {
         proved += found->complete;
         boxes.push_back(found->boxes);
         const auto& by = found->leaves_by_reason;
-        std::printf("%-16s %s gap %.4f boxes %7d leaves S %d T %d error %d bound %d empty %d unstable %d phis %zu %.3f s\n",
-                    id.c_str(), found->complete ? "proved" : "OPEN  ", found->gap, found->boxes, by[0], by[1], by[2], by[3],
-                    by[4], by[5], found->phis.size(), took);
+        std::printf(
+            "%-16s %s gap %.4f boxes %7d leaves S %d T %d error %d bound %d empty %d unstable %d phis %zu %.3f s\n",
+            id.c_str(), found->complete ? "proved" : "OPEN  ", found->gap, found->boxes, by[0], by[1], by[2], by[3],
+            by[4], by[5], found->phis.size(), took);
         std::fflush(stdout);
     }
     std::sort(times.begin(), times.end());
     std::sort(boxes.begin(), boxes.end());
     if (!boxes.empty())
-        std::printf("%s, gap %g: %d of %zu proved; median %.3f s, worst %.3f s; boxes: median %d, worst %d\n", which.c_str(),
-                    options.gap, proved, times.size(), times[times.size() / 2], times.back(), boxes[boxes.size() / 2],
-                    boxes.back());
+        std::printf("%s, gap %g: %d of %zu proved; median %.3f s, worst %.3f s; boxes: median %d, worst %d\n",
+                    which.c_str(), options.gap, proved, times.size(), times[times.size() / 2], times.back(),
+                    boxes[boxes.size() / 2], boxes.back());
     return 0;
 }

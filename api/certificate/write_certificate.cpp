@@ -9,7 +9,8 @@ void write_head(Writer& out, const Certificate& certificate) {
     const CertificateProblem& problem = certificate.problem;
     out.begin_object();
     out.key("certificate").integer(1);
-    out.key("claim").text("No stable controller of the root box with |S| <= Ms and |T| <= Mt has an IAE below the goal.");
+    out.key("claim").text(
+        "No stable controller of the root box with |S| <= Ms and |T| <= Mt has an IAE below the goal.");
     out.key("plant").begin_object();
     out.key("num").numbers(problem.plant.num);
     out.key("den").numbers(problem.plant.den);

@@ -126,7 +126,8 @@ bool is_unstable_box(const CertificateProblem& problem, const CertifiedBox& box,
     const GainsOf<Interval> gains(box);
     GainsOf<Interval> centre = gains;
     centre.h = {};
-    const auto there = terms_at(problem.structure, centre, point_at(problem, ComplexOf<Interval>{s0.real(), s0.imag()}));
+    const auto there =
+        terms_at(problem.structure, centre, point_at(problem, ComplexOf<Interval>{s0.real(), s0.imag()}));
     const double needed = high(size(there.centre) + there.rest);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const auto terms = terms_at(problem.structure, gains, pieces[i].point);

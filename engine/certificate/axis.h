@@ -1,8 +1,8 @@
 // The whole imaginary axis in intervals, for boxes of controllers that are all unstable (docs/proof.md, U).
 //
 // If |D| >= m > 0 for all controllers of the box on the axis and beyond a large circle, no pole enters or leaves the
-// right half-plane, so all are stable or none. If the centre were stable, 1/D would be analytic there and by the maximum
-// principle at most 1/m: |D(s0)| < m at one s0 with Re s0 > 0 shows that none is.
+// right half-plane, so all are stable or none. If the centre were stable, 1/D would be analytic there and by the
+// maximum principle at most 1/m: |D(s0)| < m at one s0 with Re s0 > 0 shows that none is.
 #pragma once
 
 #include <complex>
@@ -17,7 +17,7 @@ template <class R>
 struct AxisPiece {
     PointOf<R> point;  ///< at its centre
     R centre{}, half{};
-    R radius_of_Q{};   ///< |Q(jw) - Q(j centre)| is at most this; not finite at a zero of P
+    R radius_of_Q{};  ///< |Q(jw) - Q(j centre)| is at most this; not finite at a zero of P
 };
 
 /// `centre` and `half` as doubles: neighbours must overlap or meet.

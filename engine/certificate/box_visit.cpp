@@ -6,6 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "engine/certificate/design_response.h"
+#include "engine/loop/stability.h"
+
 namespace tunewright::certificate {
 namespace {
 
@@ -103,14 +106,25 @@ private:
         }
         for (const std::size_t start : lowest_of(ratio)) {
             const auto& at = data_.right[start];
-            const auto pole = pole_near({at.s.re, at.s.im});
-            if (!pole) continue;
-            centre_unstable_ = true;
-            if (by_error(*pole, error_bound(terms(point_at(data_.problem, ComplexOf<double>{pole->real(), pole->imag()})))))
-                return true;
-            if (by_whole_axis(*pole)) return true;
+            if (by_pole_near({at.s.re, at.s.im})) return true;
         }
-        return false;
+        return !centre_unstable_ && by_rightmost_pole();
+    }
+
+    bool by_pole_near(std::complex<double> start) {
+        const auto pole = pole_near(start);
+        if (!pole) return false;
+        centre_unstable_ = true;
+        const auto at = point_at(data_.problem, ComplexOf<double>{pole->real(), pole->imag()});
+        return by_error(*pole, error_bound(terms(at))) || by_whole_axis(*pole);
+    }
+
+    /// Without it a box around an unstable centre whose pole the grid misses would be split again and again.
+    bool by_rightmost_pole() {
+        const auto loop = Loop::make(*data_.plant, controller_at(data_.problem, gains_.c));
+        if (!loop || count_unstable_poles(*loop).stable()) return false;
+        const auto pole = rightmost_pole(*loop);
+        return pole && by_pole_near(*pole);
     }
 
     /// The local minima over the grid of the right half-plane, the lowest first: poles are near some of them.
@@ -125,7 +139,8 @@ private:
                 };
                 bool low = true;
                 for (int u = std::max(i - 1, 0); u <= std::min(i + 1, kRows - 1); ++u)
-                    for (int v = std::max(k - 1, 0); v <= std::min(k + 1, kAlong - 1); ++v) low &= value(i, k) <= value(u, v);
+                    for (int v = std::max(k - 1, 0); v <= std::min(k + 1, kAlong - 1); ++v)
+                        low &= value(i, k) <= value(u, v);
                 if (low) lowest.emplace_back(value(i, k), static_cast<std::size_t>(i * kAlong + k));
             }
         std::sort(lowest.begin(), lowest.end());
@@ -137,7 +152,9 @@ private:
     std::complex<double> D(std::complex<double> s) const {
         GainsOf<double> centre = gains_;
         centre.h = {};
-        const auto z = terms_at(data_.problem.structure, centre, point_at(data_.problem, ComplexOf<double>{s.real(), s.imag()})).centre;
+        const auto z =
+            terms_at(data_.problem.structure, centre, point_at(data_.problem, ComplexOf<double>{s.real(), s.imag()}))
+                .centre;
         return {z.re, z.im};
     }
 
@@ -153,7 +170,8 @@ private:
             if (std::abs(step) < 1e-12 * std::abs(s)) break;
         }
         const auto at = point_at(data_.problem, ComplexOf<double>{s.real(), s.imag()});
-        if (!(s.real() > 1e-4 * data_.scale) || !(std::abs(D(s)) < 1e-8 * (size(at.Q) + gains_.c[1]))) return std::nullopt;
+        if (!(s.real() > 1e-9 * data_.scale) || !(std::abs(D(s)) < 1e-8 * (size(at.Q) + gains_.c[1])))
+            return std::nullopt;
         return s;
     }
 
@@ -179,10 +197,12 @@ private:
             const auto& at = space_.axis[i];
             const double far = size(data_.pieces[i].point.Q) + size(at.centre);
             for (std::size_t k = 0; k < 3; ++k) weight[k] += size(at.g[k]) / far;
-            if (data_.problem.structure == CertifiedStructure::pid_tied && size(at.g[2]) == 0) weight[2] += at.rest / far;
+            if (data_.problem.structure == CertifiedStructure::pid_tied && size(at.g[2]) == 0)
+                weight[2] += at.rest / far;
         }
         for (int k = 0; k < data_.unknowns(); ++k)
-            if (weight[static_cast<std::size_t>(k)] > weight[static_cast<std::size_t>(outcome_.axis)]) outcome_.axis = k;
+            if (weight[static_cast<std::size_t>(k)] > weight[static_cast<std::size_t>(outcome_.axis)])
+                outcome_.axis = k;
     }
 
     bool by_phi() {
@@ -246,7 +266,8 @@ private:
                 if (plane.least < -reach) continue;
                 // Rows of one size, so that violations can be compared.
                 const double unit = 1 / reach;
-                space_.rows.push_back({{plane.row[0] * unit, plane.row[1] * unit, plane.row[2] * unit}, plane.least * unit});
+                space_.rows.push_back(
+                    {{plane.row[0] * unit, plane.row[1] * unit, plane.row[2] * unit}, plane.least * unit});
                 space_.cuts.push_back({complementary, data_.pieces[i].centre, 0});
                 scale_.push_back(unit);
             }
@@ -265,8 +286,9 @@ private:
 
 }  // namespace
 
-SearchData::SearchData(const CertificateProblem& of, double goal_, double scale_, double w0, int harmonics)
-    : problem(of), goal(goal_), scale(scale_), edges(axis_edges(scale_)) {
+SearchData::SearchData(const CertificateProblem& of, const LinearPlant& plant_, double goal_, double scale_, double w0,
+                       int harmonics)
+    : problem(of), plant(&plant_), goal(goal_), scale(scale_), edges(axis_edges(scale_)) {
     for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
         pieces.push_back(axis_piece<double>(problem, 0.5 * (edges[i] + edges[i + 1]), 0.5 * (edges[i + 1] - edges[i])));
         for (const bool complementary : {false, true})

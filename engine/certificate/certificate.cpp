@@ -23,7 +23,13 @@ namespace tunewright {
 namespace certificate {
 namespace {
 
-constexpr int kHarmonics = 128;
+/// A sign function's mean loses the part of the IAE near the changes of sign, of order 1/harmonics^2: up to 0.45 % with
+/// 128 on plants with a zero in the right half-plane.
+constexpr int kHarmonics = 128, kHarmonicsOfSmallGap = 512;
+constexpr double kSmallGap = 0.005;
+
+int harmonics_for(double gap) { return gap < kSmallGap ? kHarmonicsOfSmallGap : kHarmonics; }
+
 constexpr int kBatch = 32;
 constexpr int kMaxSigns = 60;
 /// A box of at most this part of the design in k, relative to its own size, may ask for a sign function.
@@ -57,13 +63,14 @@ public:
           control_(control),
           plant_(plant),
           half_period_(std::max(8 / scale, 1.25 * design.time_of_most)),
-          data_(problem, (1 - options.gap) * problem.upper, scale, std::numbers::pi / half_period_, kHarmonics),
-          check_(data_.problem, std::numbers::pi / half_period_, kHarmonics, data_.edges),
+          data_(problem, plant, (1 - options.gap) * problem.upper, scale, std::numbers::pi / half_period_,
+                harmonics_for(options.gap)),
+          check_(data_.problem, std::numbers::pi / half_period_, harmonics_for(options.gap), data_.edges),
           spaces_(kBatch) {
         result_.problem = problem;
         result_.goal = data_.goal;
         result_.w0 = std::numbers::pi / half_period_;
-        result_.harmonics = kHarmonics;
+        result_.harmonics = harmonics_for(options.gap);
         result_.root = root();
         add_sign(problem.design);
     }
@@ -116,7 +123,8 @@ private:
         parallel_for(control_.spread, static_cast<int>(batch.size()), [&](int i) {
             const auto at = static_cast<std::size_t>(i);
             const OpenBox& open = batch[at];
-            outcome[at] = visit_box(data_, check_, nodes_[static_cast<std::size_t>(open.node)].box, open.hint, spaces_[at]);
+            outcome[at] =
+                visit_box(data_, check_, nodes_[static_cast<std::size_t>(open.node)].box, open.hint, spaces_[at]);
         });
         bool added = false;
         for (std::size_t i = 0; i < batch.size(); ++i) {
@@ -228,10 +236,12 @@ Error wrong(const std::string& where, const std::string& message) {
 
 std::optional<Error> fault_of(const CertificateProblem& problem, const CertifyOptions& options) {
     if (!(problem.Ms > 1) || !(problem.Mt > 1)) return wrong("Ms", "Ms and Mt must be above 1.");
-    if (!(problem.design[1] > 0)) return wrong("controller", "The design must have integral action of the plant's sign.");
+    if (!(problem.design[1] > 0))
+        return wrong("controller", "The design must have integral action of the plant's sign.");
     if (problem.structure == CertifiedStructure::pid_tied && !(problem.design[2] > 0))
         return wrong("controller", "Td of the design must be above 0.");
-    if (!(problem.upper > 0) || !std::isfinite(problem.upper)) return wrong("controller", "The design has no finite IAE.");
+    if (!(problem.upper > 0) || !std::isfinite(problem.upper))
+        return wrong("controller", "The design has no finite IAE.");
     if (!(options.gap > 0) || !(options.gap < 1)) return wrong("gap", "The gap must be between 0 and 1.");
     if (options.reach && !(*options.reach > 1)) return wrong("reach", "The reach must be above 1.");
     return std::nullopt;
@@ -270,7 +280,8 @@ Expected<CertificateProblem> certificate_problem(const LinearPlant& plant, const
     const auto unsupported = [](const std::string& message) {
         return Error{.kind = ErrorKind::unsupported, .where = "controller", .message = message};
     };
-    if (plant.integrators() < 0) return unsupported("The plant has a zero at s = 0; integral action cannot remove a load.");
+    if (plant.integrators() < 0)
+        return unsupported("The plant has a zero at s = 0; integral action cannot remove a load.");
     if (!design.has_integral()) return unsupported("The design has no integral action, so its IAE is unbounded.");
     const bool filtered = design.filter.type == FilterType::measurement_second_order;
     if (!filtered && design.filter.type != FilterType::none)

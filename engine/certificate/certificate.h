@@ -71,31 +71,31 @@ struct SignFunction {
 struct CertificateProblem {
     CertifiedPlant plant;
     CertifiedStructure structure = CertifiedStructure::pi;
-    double Tf = 0;           ///< of pi and pid_fixed, >= 0
-    double Ms = 0, Mt = 0;   ///< > 1
+    double Tf = 0;                   ///< of pi and pid_fixed, >= 0
+    double Ms = 0, Mt = 0;           ///< > 1
     std::array<double, 3> design{};  ///< k, ki and kd or Td of the known design; ki > 0
     double upper = 0;                ///< its IAE
 };
 
 struct CertifyOptions {
-    double gap = 0.01;                       ///< goal = (1 - gap) upper; in (0, 1)
-    std::optional<double> reach;             ///< the root box over the design; default kReachOfPi, kReachOfPid
-    int max_boxes = 4'000'000;               ///< ends the search without the whole proof
-    bool keep_leaves = false;                ///< return them
+    double gap = 0.01;            ///< goal = (1 - gap) upper; in (0, 1)
+    std::optional<double> reach;  ///< the root box over the design; default kReachOfPi, kReachOfPid
+    int max_boxes = 4'000'000;    ///< ends the search without the whole proof
+    bool keep_leaves = false;     ///< return them
 };
 
 inline constexpr double kReachOfPi = 20, kReachOfPid = 4;
 
 struct Certificate {
     CertificateProblem problem;
-    double goal = 0;     ///< (1 - gap) upper
-    double lower = 0;    ///< the proven bound: `goal` if the search is complete, else the least bound of an open box
-    double gap = 0;      ///< (upper - lower)/upper
+    double goal = 0;   ///< (1 - gap) upper
+    double lower = 0;  ///< the proven bound: `goal` if the search is complete, else the least bound of an open box
+    double gap = 0;    ///< (upper - lower)/upper
     bool complete = false;
     CertifiedBox root;
-    int boxes = 0;       ///< visited
+    int boxes = 0;  ///< visited
     std::array<int, 6> leaves_by_reason{};
-    double w0 = 0;       ///< of all sign functions
+    double w0 = 0;  ///< of all sign functions
     int harmonics = 0;
     std::vector<SignFunction> phis;
     std::vector<CertificateLeaf> leaves;  ///< tile the root, depth first; empty unless asked for

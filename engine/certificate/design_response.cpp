@@ -63,9 +63,8 @@ std::optional<LoadResponse> load_response(const CertificateProblem& problem, con
         const double angle = (a.t + change.part * (b.t - a.t)) * std::numbers::pi / half_period;
         if (angle > 0 && angle < std::numbers::pi) result.sign.changes.push_back(angle);
     }
-    const auto largest = std::max_element(response.nodes.begin(), response.nodes.end(), [](const auto& a, const auto& b) {
-        return std::abs(a.y) < std::abs(b.y);
-    });
+    const auto largest = std::max_element(response.nodes.begin(), response.nodes.end(),
+                                          [](const auto& a, const auto& b) { return std::abs(a.y) < std::abs(b.y); });
     int sign = largest->y < 0 ? -1 : 1;
     for (const double angle : result.sign.changes)
         if (angle < largest->t * std::numbers::pi / half_period) sign = -sign;

@@ -1,5 +1,5 @@
-// What the search takes from responses: the loop's scales, and the sign of y after a load step. None of it is part of the
-// proof.
+// What the search takes from responses: the loop's scales, and the sign of y after a load step. None of it is part of
+// the proof.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,8 @@ struct LoadResponse {
     SignFunction sign;        ///< for a given half period
 };
 
-/// Empty: the loop is not stable, or its response does not settle. `half_period`: of the sign function, pi/w0; 0: no sign.
+/// Empty: the loop is not stable, or its response does not settle. `half_period`: of the sign function, pi/w0; 0: no
+/// sign.
 std::optional<LoadResponse> load_response(const CertificateProblem& problem, const LinearPlant& plant,
                                           const std::array<double, 3>& unknowns, double half_period);
 

@@ -24,7 +24,9 @@ public:
         return {low - (std::abs(low) * unit + kTiny), high + (std::abs(high) * unit + kTiny), Exact()};
     }
     /// The interval with exactly these ends.
-    static Interval between(double low, double high) { return low <= high ? Interval(low, high, Exact()) : everything(); }
+    static Interval between(double low, double high) {
+        return low <= high ? Interval(low, high, Exact()) : everything();
+    }
     static Interval everything() {
         return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), Exact()};
     }
@@ -95,7 +97,9 @@ inline Interval larger(Interval a, Interval b) {
 constexpr double kFunctionUnit = 1e-15;
 
 inline double exponential(double x) { return std::exp(x); }
-inline Interval exponential(Interval x) { return Interval::around(std::exp(x.low()), std::exp(x.high()), kFunctionUnit); }
+inline Interval exponential(Interval x) {
+    return Interval::around(std::exp(x.low()), std::exp(x.high()), kFunctionUnit);
+}
 
 /// sin or cos of the middle, which changes by no more than the argument.
 template <double (*function)(double)>

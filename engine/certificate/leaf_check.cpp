@@ -33,16 +33,14 @@ std::vector<double> LeafCheck::coefficients(int phi) const {
     return middle;
 }
 
-PointOf<Interval> LeafCheck::on_axis(double omega) const {
-    return point_at(problem_, ComplexOf<Interval>{0.0, omega});
-}
+PointOf<Interval> LeafCheck::on_axis(double omega) const { return point_at(problem_, ComplexOf<Interval>{0.0, omega}); }
 
 bool LeafCheck::sum_of_cuts(const CertificateLeaf& leaf, const GainsOf<Interval>& box, Row& sum) const {
     for (const LimitCut& cut : leaf.cuts) {
         if (!(cut.multiplier >= 0) || !(cut.omega > 0)) return false;
         const auto point = on_axis(cut.omega);
-        const auto plane = half_plane(terms_at(problem_.structure, box, point),
-                                      forbidden_disc(problem_, point, cut.complementary));
+        const auto plane =
+            half_plane(terms_at(problem_.structure, box, point), forbidden_disc(problem_, point, cut.complementary));
         if (!plane.exists) return false;
         for (std::size_t i = 0; i < 3; ++i) sum.row[i] = sum.row[i] + plane.row[i] * Interval(cut.multiplier);
         sum.least = sum.least + plane.least * Interval(cut.multiplier);

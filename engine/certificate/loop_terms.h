@@ -92,7 +92,8 @@ struct TiedFilter {
         a1 = slope_of_a * squared;
         b1 = ComplexOf<R>{} - slope_of_b * squared;
         rho = size(s) * h / R(kN);
-        const R inverse_2 = R(1) / norm(filter_polynomial(s * ((T - h) / R(kN)))), inverse_3 = inverse_2 * root(inverse_2);
+        const R inverse_2 = R(1) / norm(filter_polynomial(s * ((T - h) / R(kN)))),
+                inverse_3 = inverse_2 * root(inverse_2);
         const R rho_2 = square(rho);
         A1 = rho * inverse_2 * (size(slope_of_a) + size(sum(R(1), y * R(10))) * rho + rho_2 * R(5));
         B1 = rho * inverse_2 * (size(slope_of_b) + rho);
@@ -143,7 +144,8 @@ TermsOf<R> terms_at(CertifiedStructure structure, const GainsOf<R>& box, const P
 /// An upper bound of |D + shift| over the box: that of a corner.
 template <class R>
 double largest_size(const TermsOf<R>& terms, ComplexOf<R> shift) {
-    const ComplexOf<R> z = terms.centre + shift, g = terms.g[0], u = terms.g[1] + terms.g[2], v = terms.g[1] - terms.g[2];
+    const ComplexOf<R> z = terms.centre + shift, g = terms.g[0], u = terms.g[1] + terms.g[2],
+                       v = terms.g[1] - terms.g[2];
     const double squared = std::max(std::max(std::max(high(norm(z + g + u)), high(norm(z + g - u))),
                                              std::max(high(norm(z + g + v)), high(norm(z + g - v)))),
                                     std::max(std::max(high(norm(z - g + u)), high(norm(z - g - u))),

@@ -17,21 +17,12 @@ from functools import lru_cache
 INF = math.inf
 N = 10  # Td/Tf of the tied filter
 
-
 class Refused(Exception):
     """The certificate proves nothing, with the reason."""
 
-
 # ---- intervals
-
-
-def down(x):
-    return math.nextafter(x, -INF)
-
-
-def up(x):
-    return math.nextafter(x, INF)
-
+def down(x): return math.nextafter(x, -INF)
+def up(x): return math.nextafter(x, INF)
 
 class I:
     """The real numbers from a to b."""
@@ -43,15 +34,9 @@ class I:
         if not self.a <= self.b:  # also if one of them is no number
             self.a, self.b = -INF, INF
 
-    def __add__(self, o):
-        return I(down(self.a + o.a), up(self.b + o.b))
-
-    def __sub__(self, o):
-        return I(down(self.a - o.b), up(self.b - o.a))
-
-    def __neg__(self):
-        return I(-self.b, -self.a)
-
+    def __add__(self, o): return I(down(self.a + o.a), up(self.b + o.b))
+    def __sub__(self, o): return I(down(self.a - o.b), up(self.b - o.a))
+    def __neg__(self): return I(-self.b, -self.a)
     def __mul__(self, o):
         p = (self.a * o.a, self.a * o.b, self.b * o.a, self.b * o.b)
         if not math.isfinite(sum(p)):
@@ -64,21 +49,17 @@ class I:
         return self * I(down(1 / o.b), up(1 / o.a))
 
     def square(self):
-        x, y = abs(self.a), abs(self.b)
-        least = 0.0 if self.a <= 0 <= self.b else max(0.0, down(min(x, y) ** 2))
-        return I(least, up(max(x, y) ** 2))
+        x, y = min(abs(self.a), abs(self.b)), max(abs(self.a), abs(self.b))
+        return I(0.0 if self.a <= 0 <= self.b else max(0.0, down(x * x)), up(y * y))
 
     def root(self):
         if self.b < 0 or math.isinf(self.b):
             return I(-INF, INF)
         return I(max(0.0, down(math.sqrt(max(self.a, 0.0)))), up(math.sqrt(self.b)))
 
-    def size(self):
-        return self if self.a >= 0 else -self if self.b <= 0 else I(0, max(-self.a, self.b))
-
+    def size(self): return self if self.a >= 0 else -self if self.b <= 0 else I(0, max(-self.a, self.b))
 
 ZERO, ONE, HALF = I(0), I(1), I(0.5)
-
 
 class Z:
     """A rectangle of complex numbers."""
@@ -87,38 +68,26 @@ class Z:
     def __init__(self, re, im=ZERO):
         self.re, self.im = re, im
 
-    def __add__(self, o):
-        return Z(self.re + o.re, self.im + o.im)
-
-    def __sub__(self, o):
-        return Z(self.re - o.re, self.im - o.im)
-
+    def __add__(self, o): return Z(self.re + o.re, self.im + o.im)
+    def __sub__(self, o): return Z(self.re - o.re, self.im - o.im)
     def __mul__(self, o):
         if isinstance(o, I):
             return Z(self.re * o, self.im * o)
         return Z(self.re * o.re - self.im * o.im, self.re * o.im + self.im * o.re)
 
-    def norm(self):
-        return self.re.square() + self.im.square()
-
-    def size(self):
-        return self.norm().root()
-
+    def norm(self): return self.re.square() + self.im.square()
+    def size(self): return self.norm().root()
     def inverse(self):
         n = self.norm()
         return Z(self.re / n, -self.im / n)
 
-
 # ---- elementary functions, by fixed-point integers
-
 BITS = 200
-
 
 def fixed(x):
     """x times 2^BITS, rounded down."""
     n, d = x.as_integer_ratio()
     return (n << BITS) // d
-
 
 def interval_of(n, error):
     """The numbers within `error` of n, all times 2^-BITS."""
@@ -126,7 +95,6 @@ def interval_of(n, error):
         shift = max(0, abs(k).bit_length() - 60)  # an integer of 60 bits; what is cut off is below half a double's unit
         return math.ldexp(float(k >> shift), shift - BITS)
     return I(down(down(nearest(n - error))), up(up(nearest(n + error))))
-
 
 def turned(x):
     """e^(jx), as two integers with their error: the series at x/2^k < 1/16, squared k times."""
@@ -145,12 +113,10 @@ def turned(x):
         re, im = (re * re - im * im) >> BITS, (2 * re * im) >> BITS
     return re, im, 1 << (k + 20)  # each step adds a few units and doubles what was there
 
-
 @lru_cache(maxsize=None)
 def cos_sin_of(x):
     re, im, error = turned(x)
     return interval_of(re, error), interval_of(im, error)
-
 
 def cos_sin(x):
     """Both, of an interval: those of its middle, which change by no more than the argument."""
@@ -159,12 +125,11 @@ def cos_sin(x):
     around = I(-1, 1) * I(max((x - I(middle)).b, (I(middle) - x).b))
     return c + around, s + around
 
-
 @lru_cache(maxsize=None)
 def exp_of(x):
     k = max(0, math.frexp(x)[1] + 4)
     if k > 14:
-        return I(0, INF) if x < 0 else I(0, INF)
+        return I(0, INF)
     z, sum_, term, n = fixed(x) >> k, 1 << BITS, 1 << BITS, 0
     while abs(term) > 1 and n < 200:
         n += 1
@@ -175,10 +140,8 @@ def exp_of(x):
         value = value.square()
     return value
 
-
 def exp(x):
     return I(exp_of(x.a).a, exp_of(x.b).b)
-
 
 def pi():
     """Machin: pi = 16 atan(1/5) - 4 atan(1/239)."""
@@ -190,23 +153,18 @@ def pi():
         return total
     return interval_of(16 * atan_inverse(5) - 4 * atan_inverse(239), 1 << 20)
 
-
 PI = pi()
 
 # ---- the loop
-
-
 def number(x):
     if isinstance(x, bool) or not isinstance(x, (int, float)) or not math.isfinite(x):
         raise Refused(f"{x!r} is not a finite number")
     return float(x)
 
-
 def numbers(values, count=None):
     if not isinstance(values, list) or count not in (None, len(values)):
         raise Refused("a list has the wrong length")
     return [number(x) for x in values]
-
 
 class Problem:
     """The first line of a certificate."""
@@ -279,14 +237,8 @@ class Problem:
             self.points[key] = s, s * den * num.inverse() * Z(grown * c, grown * w), low_pass(s * I(self.Tf)).inverse()
         return self.points[key]
 
-
-def sin_multiple(m, x):
-    return ZERO if x is ZERO or x is PI else cos_sin(I(m) * x)[1]
-
-
-def low_pass(y):
-    return Z(ONE) + y + y * y * HALF
-
+def sin_multiple(m, x): return ZERO if x is ZERO or x is PI else cos_sin(I(m) * x)[1]
+def low_pass(y): return Z(ONE) + y + y * y * HALF
 
 class Box:
     """A leaf's box: centre and half-widths, both as intervals; the third is 0 for a PI."""
@@ -331,18 +283,15 @@ class Box:
             return centre, g[:2], rough
         return centre, g, rest
 
-
 def corners(g):
     sums = [Z(ZERO)]
     for x in g:
         sums = [z + x for z in sums] + [z - x for z in sums]
     return sums
 
-
 def most(z, g, rest):
     """An upper bound of |z + sum d_i g_i + rho|: a convex function is largest at a corner."""
     return (I(max((z + x).norm().b for x in corners(g))).root() + rest).b
-
 
 def disc(problem, Q, of_T):
     """A limit demands |D + shift| >= radius."""
@@ -351,10 +300,7 @@ def disc(problem, Q, of_T):
     excess = I(problem.Mt).square() - ONE
     return Q * (ONE / excess), Q.size() * (I(problem.Mt) / excess)
 
-
 # ---- the reasons
-
-
 def exceeds_limit(problem, box, leaf):
     omega = number(leaf["omega"])
     if omega <= 0:
@@ -364,11 +310,9 @@ def exceeds_limit(problem, box, leaf):
     shift, radius = disc(problem, where[1], leaf["reason"] == "complementary")
     return most(centre + shift, g, rest) < radius.a
 
-
 def error_is_large(problem, box, leaf):
     re, im = numbers(leaf["s"], 2)
     return re >= 0 and (ONE / I(most(*box.terms(problem.at(I(re), I(im)))))).a >= problem.goal
-
 
 def sum_of_cuts(problem, box, cuts):
     """The weighted half-planes: row d >= least for every controller of the box within the limits."""
@@ -393,11 +337,9 @@ def sum_of_cuts(problem, box, cuts):
         least = least + ((radius.square() - aside.square()).root() - far - rest) * I(weight)
     return row, least
 
-
 def nothing_is_left(problem, box, leaf):
     row, least = sum_of_cuts(problem, box, leaf["cuts"])
     return (least - sum((x.size() for x in row), ZERO)).a > 0
-
 
 def mean_is_large(problem, box, leaf):
     if not isinstance(leaf["phi"], int) or not 0 <= leaf["phi"] < len(problem.phis):
@@ -415,7 +357,6 @@ def mean_is_large(problem, box, leaf):
     row, least = sum_of_cuts(problem, box, leaf["cuts"])
     return (bound + least - sum(((x - y).size() for x, y in zip(slope, row)), ZERO)).a >= problem.goal
 
-
 def taylor_radius(descending, s, half):
     """How far a polynomial gets from its value at s within `half` of it, and that value."""
     a = [Z(I(x)) for x in descending]
@@ -427,7 +368,6 @@ def taylor_radius(descending, s, half):
         power = power * half
         radius = radius + x.size() * power
     return radius, a[-1]
-
 
 def controller_slope(problem, box, first, last):
     """A bound of |d(sC)/ds| over the box, from j first to j last."""
@@ -445,7 +385,6 @@ def controller_slope(problem, box, first, last):
     slope_of_F = I(problem.Tf) * (ONE + v.square()).root() * inverse
     return slope_of_F * (k * last + ki + third * last.square()) + inverse.root() * (k + third * last * I(2))
 
-
 def least_between(problem, box, first, last):
     """A lower bound of |D| over the box from j first to j last."""
     w = I(0.5 * (first + last))
@@ -462,7 +401,6 @@ def least_between(problem, box, first, last):
     n = centre * (ONE / far)
     reach = sum(((n.re * x.re + n.im * x.im).size() for x in g), rest + radius)
     return (far - reach - controller_slope(problem, box, I(first), I(last)) * half).a
-
 
 def least_beyond(problem, box, w):
     """A lower bound of |D| over the box for |s| >= w, Re s >= 0; 0 if the plant does not dominate there."""
@@ -485,7 +423,6 @@ def least_beyond(problem, box, w):
         law = law + third * I(filtered if excess == 0 else min(filtered, w.square().b))
     return 0.5 * plant.a if plant.a > 0 and (law + law).b <= plant.a else 0.0
 
-
 def all_unstable(problem, box, leaf):
     """|D| stays above |D(s0)| of the centre on the axis and far out, for the whole box: see docs/proof.md."""
     re, im = numbers(leaf["s"], 2)
@@ -506,14 +443,10 @@ def all_unstable(problem, box, leaf):
             ratio = 1 + (ratio - 1) / 2
     return False
 
-
 REASONS = {"sensitivity": exceeds_limit, "complementary": exceeds_limit, "error": error_is_large, "bound": mean_is_large,
            "empty": nothing_is_left, "unstable": all_unstable}
 
-
 # ---- the tiling
-
-
 def tile(problem, boxes):
     """Joins each box with those before it that share a whole face with it; in the order of the file one box is left."""
     stack = []
@@ -528,7 +461,6 @@ def tile(problem, boxes):
                 break
             stack[-2:] = [(low, next_high)]
     return stack == [(problem.low, problem.high)]
-
 
 def check(lines):
     """Counts of leaves by reason; raises Refused."""
@@ -549,7 +481,6 @@ def check(lines):
             raise Refused(f"leaf {i} ({leaf['reason']}) does not hold")
     return problem, Counter(leaf["reason"] for leaf in leaves)
 
-
 def main():
     if len(sys.argv) != 2:
         print(__doc__, file=sys.stderr)
@@ -564,7 +495,6 @@ def main():
     print(f"No stable {problem.structure} controller of the root box within Ms = {problem.Ms:g}, Mt = {problem.Mt:g} has an "
           f"IAE below {problem.goal!r}.")
     return 0
-
 
 if __name__ == "__main__":
     sys.exit(main())

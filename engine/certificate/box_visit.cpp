@@ -6,6 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "engine/certificate/design_response.h"
+#include "engine/loop/stability.h"
+
 namespace tunewright::certificate {
 namespace {
 
@@ -103,15 +106,25 @@ private:
         }
         for (const std::size_t start : lowest_of(ratio)) {
             const auto& at = data_.right[start];
-            const auto pole = pole_near({at.s.re, at.s.im});
-            if (!pole) continue;
-            centre_unstable_ = true;
-            if (by_error(*pole,
-                         error_bound(terms(point_at(data_.problem, ComplexOf<double>{pole->real(), pole->imag()})))))
-                return true;
-            if (by_whole_axis(*pole)) return true;
+            if (by_pole_near({at.s.re, at.s.im})) return true;
         }
-        return false;
+        return !centre_unstable_ && by_rightmost_pole();
+    }
+
+    bool by_pole_near(std::complex<double> start) {
+        const auto pole = pole_near(start);
+        if (!pole) return false;
+        centre_unstable_ = true;
+        const auto at = point_at(data_.problem, ComplexOf<double>{pole->real(), pole->imag()});
+        return by_error(*pole, error_bound(terms(at))) || by_whole_axis(*pole);
+    }
+
+    /// Without it a box around an unstable centre whose pole the grid misses would be split again and again.
+    bool by_rightmost_pole() {
+        const auto loop = Loop::make(*data_.plant, controller_at(data_.problem, gains_.c));
+        if (!loop || count_unstable_poles(*loop).stable()) return false;
+        const auto pole = rightmost_pole(*loop);
+        return pole && by_pole_near(*pole);
     }
 
     /// The local minima over the grid of the right half-plane, the lowest first: poles are near some of them.
@@ -157,7 +170,7 @@ private:
             if (std::abs(step) < 1e-12 * std::abs(s)) break;
         }
         const auto at = point_at(data_.problem, ComplexOf<double>{s.real(), s.imag()});
-        if (!(s.real() > 1e-4 * data_.scale) || !(std::abs(D(s)) < 1e-8 * (size(at.Q) + gains_.c[1])))
+        if (!(s.real() > 1e-9 * data_.scale) || !(std::abs(D(s)) < 1e-8 * (size(at.Q) + gains_.c[1])))
             return std::nullopt;
         return s;
     }
@@ -273,8 +286,9 @@ private:
 
 }  // namespace
 
-SearchData::SearchData(const CertificateProblem& of, double goal_, double scale_, double w0, int harmonics)
-    : problem(of), goal(goal_), scale(scale_), edges(axis_edges(scale_)) {
+SearchData::SearchData(const CertificateProblem& of, const LinearPlant& plant_, double goal_, double scale_, double w0,
+                       int harmonics)
+    : problem(of), plant(&plant_), goal(goal_), scale(scale_), edges(axis_edges(scale_)) {
     for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
         pieces.push_back(axis_piece<double>(problem, 0.5 * (edges[i] + edges[i + 1]), 0.5 * (edges[i + 1] - edges[i])));
         for (const bool complementary : {false, true})

@@ -2,8 +2,8 @@
 //
 // 1. 1/ki, and the frequency that came nearest for the parent.
 // 2. All frequencies: forbidden discs, and |1/D| on the axis.
-// 3. |1/D| in the right half-plane; Newton's method for a pole of the centre there, then |1/D| at it and the whole
-// axis.
+// 3. |1/D| in the right half-plane; Newton's method for a pole of the centre there, from a grid and else from the
+//    rightmost pole of an unstable centre, then |1/D| at it and the whole axis.
 // 4. If no such pole is found: the harmonics of each sign function, and the linear program with the limits'
 // half-planes.
 #pragma once
@@ -20,7 +20,8 @@ namespace tunewright::certificate {
 /// What the search knows of the problem, computed once.
 struct SearchData {
     CertificateProblem problem;
-    double goal = 0, scale = 0;  ///< scale: a frequency near the loop's peak
+    const LinearPlant* plant = nullptr;  ///< the same; not owned
+    double goal = 0, scale = 0;          ///< scale: a frequency near the loop's peak
     std::vector<double> edges;
     std::vector<AxisPiece<double>> pieces;
     std::vector<ForbiddenDisc<double>> discs;  ///< of S and T, by turns
@@ -28,7 +29,8 @@ struct SearchData {
     std::vector<PointOf<double>> harmonic;
     std::vector<std::vector<double>> phis;
 
-    SearchData(const CertificateProblem& of, double goal, double scale, double w0, int harmonics);
+    SearchData(const CertificateProblem& of, const LinearPlant& plant, double goal, double scale, double w0,
+               int harmonics);
     int unknowns() const { return problem.structure == CertifiedStructure::pi ? 2 : 3; }
 };
 

@@ -23,7 +23,13 @@ namespace tunewright {
 namespace certificate {
 namespace {
 
-constexpr int kHarmonics = 128;
+/// A sign function's mean loses the part of the IAE near the changes of sign, of order 1/harmonics^2: up to 0.45 % with
+/// 128 on plants with a zero in the right half-plane.
+constexpr int kHarmonics = 128, kHarmonicsOfSmallGap = 512;
+constexpr double kSmallGap = 0.005;
+
+int harmonics_for(double gap) { return gap < kSmallGap ? kHarmonicsOfSmallGap : kHarmonics; }
+
 constexpr int kBatch = 32;
 constexpr int kMaxSigns = 60;
 /// A box of at most this part of the design in k, relative to its own size, may ask for a sign function.
@@ -57,13 +63,14 @@ public:
           control_(control),
           plant_(plant),
           half_period_(std::max(8 / scale, 1.25 * design.time_of_most)),
-          data_(problem, (1 - options.gap) * problem.upper, scale, std::numbers::pi / half_period_, kHarmonics),
-          check_(data_.problem, std::numbers::pi / half_period_, kHarmonics, data_.edges),
+          data_(problem, plant, (1 - options.gap) * problem.upper, scale, std::numbers::pi / half_period_,
+                harmonics_for(options.gap)),
+          check_(data_.problem, std::numbers::pi / half_period_, harmonics_for(options.gap), data_.edges),
           spaces_(kBatch) {
         result_.problem = problem;
         result_.goal = data_.goal;
         result_.w0 = std::numbers::pi / half_period_;
-        result_.harmonics = kHarmonics;
+        result_.harmonics = harmonics_for(options.gap);
         result_.root = root();
         add_sign(problem.design);
     }

@@ -9,7 +9,7 @@
 #include "engine/range/one_setting_problem.h"
 #include "engine/range/schedule/point_evaluation.h"
 #include "engine/tuning/limits.h"
-#include "engine/tuning/robust/problem_loops.h"
+#include "engine/tuning/robust/feasibility.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/verified_search.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/loop/worst_case.h"
-#include "engine/tuning/robust/problem_loops.h"
+#include "engine/tuning/robust/feasibility.h"
 
 namespace tunewright::robust {
 namespace {

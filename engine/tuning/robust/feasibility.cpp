@@ -8,7 +8,6 @@
 #include "engine/number_text.h"
 #include "engine/numerics/optimise/direct_search.h"
 #include "engine/tuning/limits.h"
-#include "engine/tuning/robust/problem_loops.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/starts.h"
 #include "engine/tuning/robust/sweep/sweep.h"

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/expected.h"
+#include "engine/loop/measured_loop.h"
 #include "engine/tuning/robust/design.h"
 
 namespace tunewright::robust {
@@ -28,5 +29,15 @@ bool has_no_finite_optimum(const DesignProblem& problem);
 /// The reason why there is no controller. The cure of a no_feasible_controller is the smallest common limit on Ms and
 /// Mt that works, to three decimals, if it is an allowed value. `min`: of the same problem.
 Error why_infeasible(const DesignProblem& problem, const std::optional<MinPeak>& min);
+
+/// True if `test` holds for every loop of the problem: one controller on each plant, or on the measured points; it is
+/// called with an Expected<Loop> or an Expected<MeasuredLoop>.
+template <class Test>
+bool holds_on_every_loop(const DesignProblem& problem, const ParallelPid& gains, Test test) {
+    if (problem.measured != nullptr) return test(MeasuredLoop::make(*problem.measured, gains));
+    for (std::size_t i = 0; i < problem.plants(); ++i)
+        if (!test(Loop::make(problem.plant_at(i), gains))) return false;
+    return true;
+}
 
 }  // namespace tunewright::robust

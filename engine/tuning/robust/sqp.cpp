@@ -7,7 +7,7 @@
 #include "engine/numerics/optimise/quadratic_program.h"
 #include "engine/numerics/optimise/sqp.h"
 #include "engine/tuning/limits.h"
-#include "engine/tuning/robust/problem_loops.h"
+#include "engine/tuning/robust/feasibility.h"
 
 namespace tunewright::robust {
 namespace {

@@ -613,6 +613,7 @@ export type components = {
       as_entered?: components["schemas"]["SettingsAnswer"];
       implemented?: components["schemas"]["Implemented"];
       surface?: components["schemas"]["CostSurface"];
+      certificate?: components["schemas"]["Certificate"];
       frontier?: components["schemas"]["Frontier"];
       rimc?: components["schemas"]["Rimc"];
       optimum_at_Ms?: components["schemas"]["OptimumAtMs"];
@@ -816,6 +817,28 @@ export type components = {
       Ti: (number | null)[];
       Td: (number | null)[];
       cost: (number | null)[][];
+    };
+    Certificate: {
+      upper: number;
+      lower: number;
+      gap: number;
+      complete: boolean;
+      root: {
+        low: {
+          k: number;
+          ki: number;
+          kd?: number;
+          Td?: number;
+        };
+        high: {
+          k: number;
+          ki: number;
+          kd?: number;
+          Td?: number;
+        };
+      };
+      boxes: number;
+      seconds: number;
     };
     Frontier: {
       points: components["schemas"]["FrontierPoint"][];
@@ -1737,7 +1760,7 @@ export type components = {
       };
     };
     Conclusion: {
-      code: "unstable" | "cascade-pays" | "cascade-gains-little" | "inner-too-slow" | "inner-peak-above" | "outer-peak-above" | "valve-peak-above" | "near-lowest-rate" | "level-above-room" | "flow-loop-unstable" | "flow-loop-too-slow" | "feedforward-exact" | "feedforward-pays" | "feedforward-gains-little" | "gain-alone-worse-than-none" | "peak-unavoidable" | "wrong-model-worse-than-none" | "pid-does-as-well" | "predictor-pays" | "limited-by-dead-time-error" | "narrow-dead-time-window" | "controller-unstable" | "pairing-impossible" | "other-pairing-better" | "hardly-interacting" | "mu-above" | "subsets-unstable" | "better-than-blt";
+      code: "unstable" | "cascade-pays" | "cascade-gains-little" | "inner-too-slow" | "inner-peak-above" | "outer-peak-above" | "valve-peak-above" | "near-lowest-rate" | "level-above-room" | "flow-loop-unstable" | "flow-loop-too-slow" | "feedforward-exact" | "feedforward-pays" | "feedforward-gains-little" | "feedforward-worse-than-none" | "gain-alone-worse-than-none" | "peak-unavoidable" | "wrong-model-worse-than-none" | "pid-does-as-well" | "predictor-pays" | "limited-by-dead-time-error" | "narrow-dead-time-window" | "controller-unstable" | "pairing-impossible" | "other-pairing-better" | "hardly-interacting" | "mu-above" | "subsets-unstable" | "better-than-blt";
       figures: {
         [key: string]: number | null;
       };
@@ -1807,6 +1830,8 @@ export type components = {
       bound: number;
       robustness: {
         Ms: number | null;
+        highest: number | null;
+        largest_rate: number | null;
         why_null?: {
           [key: string]: string;
         };
@@ -2449,6 +2474,7 @@ export type SettingsNote = components['schemas']['SettingsNote'];
 export type Implemented = components['schemas']['Implemented'];
 export type Difference = components['schemas']['Difference'];
 export type CostSurface = components['schemas']['CostSurface'];
+export type Certificate = components['schemas']['Certificate'];
 export type Frontier = components['schemas']['Frontier'];
 export type FrontierPoint = components['schemas']['FrontierPoint'];
 export type Rimc = components['schemas']['Rimc'];

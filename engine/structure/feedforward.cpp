@@ -22,6 +22,7 @@ constexpr double kSlopeOfRule = 1.7;               // Guzman and Hagglund: a ove
 constexpr double kFirstSteps[] = {0.1, 0.3, 0.5};  // of ln(Kf), ln(Tz), ln(Tp)
 constexpr int kMostEvaluations = 160;              // of each of the searches
 constexpr double kShortLag = 0.05;                 // of the lead: a start whose first move is large
+constexpr double kSameMove = 1 + 1e-9;             // of the bound: rounding
 constexpr double kNearZero = 1e-5;                 // of 1/time: where transforms are taken for 0
 
 struct Diagram {
@@ -246,16 +247,20 @@ Expected<FeedforwardResult> design_feedforward(const FeedforwardProblem& problem
         return out;
     }
     const Feedforward inverse = inverse_of(problem), rule = rule_of(problem, out.late);
-    if (auto error = add(FeedforwardKind::gain, Feedforward{.Kf = inverse.Kf})) return *error;
-    const bool proper = inverse.Tp > 0 || !(inverse.Tz > 0);
-    if (!proper || std::abs(inverse.jump()) > problem.jump) {
+    constexpr const char* kTooFar = "It would move u by more than the allowed first move after a unit step.";
+    const auto add_within = [&](FeedforwardKind kind, const Feedforward& f) -> std::optional<Error> {
+        const bool proper = f.Tp > 0 || !(f.Tz > 0);
+        const bool turned = f.Kf * inverse.Kf <= 0;
+        if (proper && !turned && std::abs(f.jump()) <= problem.jump * kSameMove) return add(kind, f);
         out.variants.push_back(
-            unbuilt(FeedforwardKind::inverse,
-                    "The inverse would move u by more than the allowed first move after a unit step."));
-    } else if (auto error = add(FeedforwardKind::inverse, inverse)) {
-        return *error;
-    }
-    if (auto error = add(FeedforwardKind::rule, rule)) return *error;
+            unbuilt(kind, proper && turned ? "With this limit on the first move its gain would have the wrong sign."
+                                           : kTooFar));
+        return std::nullopt;
+    };
+    if (auto error = add_within(FeedforwardKind::gain, Feedforward{.Kf = inverse.Kf})) return *error;
+    if (auto error = add_within(FeedforwardKind::inverse, inverse)) return *error;
+    if (auto error = add_within(FeedforwardKind::rule, rule)) return *error;
+    const bool proper = inverse.Tp > 0 || !(inverse.Tz > 0);
     const bool exact =
         out.late <= 0 && proper && std::abs(inverse.jump()) <= problem.jump &&
         out.variants[std::size_t(FeedforwardKind::inverse)].figures.IAE < 1e-6 * out.variants.front().figures.IAE;

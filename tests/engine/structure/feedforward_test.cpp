@@ -137,5 +137,22 @@ TEST(Feedforward, PlantAndDisturbanceMayBothIntegrate) {
     EXPECT_EQ(refused.error().where, "disturbance");
 }
 
+TEST(Feedforward, NoVariantExceedsTheFirstMove) {
+    for (const double jump : {0.1, 0.5, 0.7, 2.0, 6.0}) {
+        const FeedforwardProblem problem{.plant = first_order(1.5, 60, 15),
+                                         .disturbance = first_order(1, 15, 0),
+                                         .feedback = pi(1.3333, 60),
+                                         .jump = jump};
+        const auto found = design_feedforward(problem, {});
+        ASSERT_TRUE(found) << found.error().message;
+        for (const FeedforwardVariant& variant : found->variants) {
+            if (!variant.why_not.empty() || !variant.compensator) continue;
+            EXPECT_LE(std::abs(variant.u_start), jump * (1 + 1e-6)) << jump << " " << name_of(variant.kind);
+            EXPECT_GT(variant.compensator->Kf, 0) << jump << " " << name_of(variant.kind);
+        }
+        EXPECT_EQ(found->variants.size(), 5u);
+    }
+}
+
 }  // namespace
 }  // namespace tunewright::structure

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "api/contract/device/device.h"
 #include "api/contract/structure/structure_name.h"
@@ -22,9 +23,36 @@ Controller read_controller(const Json& json, Reader& reader) {
 
 namespace {
 
+bool is_named(const CodeWords& words, std::string_view name) {
+    return std::ranges::any_of(words, [&](const auto& word) { return word.first == name; });
+}
+
+/// The request of a structure has its program simulated.
+bool is_simulated(const ChosenEntry& found) {
+    return !structure_of(found.result).empty() && found.request.is_object() &&
+           found.request.value("sampled", Json()).is_object();
+}
+
+/// The members of `sampled`, so that the program is the one that was simulated, without those that a parameter of the
+/// call replaces.
+Json simulated_rules(const CodeWords& words, const Json& request) {
+    Json out = Json::object();
+    // A rule takes its own setting with it.
+    constexpr std::pair<const char*, const char*> kReplaced[] = {
+        {"derivative", "slope_samples"}, {"anti_windup", "tracking_time"}, {"tracking_time", "anti_windup"}};
+    const auto replaced = [&](const std::string& name) {
+        return is_named(words, name) || std::ranges::any_of(kReplaced, [&](const auto& pair) {
+                   return name == pair.second && is_named(words, pair.first);
+               });
+    };
+    for (const auto& [name, value] : request.at("sampled").items())
+        if (name != "steps" && name != "sample_time" && !value.is_null() && !replaced(name)) out[name] = value;
+    return out;
+}
+
 /// Texts that are numbers become numbers; a text that the contract refuses stays as typed, so that its error can quote
-/// it.
-void read_words(const CodeWords& words, CodeQuestion& question, Reader& reader) {
+/// it. `defaults`: for what the words do not name.
+void read_words(const CodeWords& words, const Json& defaults, CodeQuestion& question, Reader& reader) {
     Json given = Json::object();
     for (const auto& [name, word] : words) {
         std::string name_storage, word_storage;
@@ -33,6 +61,8 @@ void read_words(const CodeWords& words, CodeQuestion& question, Reader& reader) 
         Json number = Json::parse(value, nullptr, false);
         given[key] = number.is_number() ? std::move(number) : Json(value);
     }
+    for (const auto& [name, value] : defaults.items())
+        if (!given.contains(name)) given[name] = value;
     code_contract().read(given, question, reader);
 }
 
@@ -42,9 +72,7 @@ void take_implemented(const CodeWords& words, const Json& request, CodeQuestion&
     GivenDevice given;
     Reader reader;  // a request that was answered has no faults
     implement_contract().read(request.at("implement"), given, reader);
-    const auto asked = [&](const char* name) {
-        return std::ranges::any_of(words, [&](const auto& word) { return word.first == name; });
-    };
+    const auto asked = [&](const char* name) { return is_named(words, name); };
     if (given.integral && !asked("integral")) question.integral = *given.integral;
     if (given.derivative == GivenDevice::Derivative::difference && !asked("derivative"))
         question.derivative = DerivativeRule::difference;
@@ -73,15 +101,16 @@ double number_at(const Json& value, const char* place) {
 
 AskedCode read_asked(const CodeWords& words, const ChosenEntry& found, Reader& reader) {
     AskedCode asked;
-    read_words(words, asked.question, reader);
-    take_implemented(words, found.request, asked.question);
+    const bool simulated = is_simulated(found);
+    read_words(words, simulated ? simulated_rules(words, found.request) : Json::object(), asked.question, reader);
+    if (!simulated) take_implemented(words, found.request, asked.question);
     refuse_others(asked.question, structure_of(found.result), reader);
     asked.unit = unit_of(found.result, reader);
     return asked;
 }
 
 std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const Json& request, const ParallelPid& gains,
-                                                 const Json& design) {
+                                                 const Json& design, double shortest_lag) {
     const auto given = design.find("longest_sample_time");
     std::optional<double> longest;
     if (given != design.end() && given->is_number()) longest = given->get<double>() * asked.unit;
@@ -91,13 +120,18 @@ std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const J
         return SampleTime{seconds, std::move(origin)};
     };
     if (asked.question.sample_time) return chosen(*asked.question.sample_time * asked.unit, "as asked for");
-    const Json::json_pointer place("/implement/sample_time");
-    if (request.is_object() && request.contains(place) && request.at(place).is_number() &&
-        request.at(place).get<double>() > 0)
-        return chosen(request.at(place).get<double>() * asked.unit, "from the request");
+    for (const char* place : {"/sampled/sample_time", "/implement/sample_time", "/implement/0/sample_time"})
+        if (const double requested = number_at(request, place); requested > 0)
+            return chosen(requested * asked.unit, "from the request");
     constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    const auto of_controller = code::proposed_sample_time(gains);
+    if (const auto proposed = code::proposed_sample_time(gains, shortest_lag / 10);
+        proposed && shortest_lag < kNoLimit && proposed != of_controller)
+        return SampleTime{*proposed,
+                          "proposed, because none was given: a tenth of the shortest lag of the compensator or of the "
+                          "predictor's filter, rounded down"};
     if (const auto proposed = code::proposed_sample_time(gains, longest.value_or(kNoLimit)))
-        return SampleTime{*proposed, proposed == code::proposed_sample_time(gains)
+        return SampleTime{*proposed, proposed == of_controller
                                          ? "proposed, because none was given: a tenth of the shorter of Ti and Td, no "
                                            "more than Tf, rounded down"
                                          : "proposed, because none was given: the longest that raises Ms by no more "

@@ -1,6 +1,7 @@
 // The parameters of a program: options of the call and of the command, combined with the result and its request.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -15,8 +16,8 @@
 
 namespace tunewright::api {
 
-/// The parameters as typed, rules that they leave out from the request's `implement`, and the units of the result: all
-/// read before anything is computed.
+/// The parameters as typed, what they leave out from the request (of a structure from `sampled`, else the rules of
+/// `implement`), and the units of the result: all read before anything is computed.
 struct AskedCode {
     CodeQuestion question;
     double unit = 1;  ///< seconds in the result's unit of time
@@ -31,11 +32,13 @@ struct SampleTime {
     std::string origin;  ///< for the head comment
 };
 
-/// The sample time: as asked for, else as in the request's `implement`, else from the controller's own times (gains
-/// with their times in seconds) and the design's `longest_sample_time`, of an entry or a schedule, if it has one. A
+/// The sample time: as asked for, else as in the request's `sampled` or `implement`, of a list its first, else from the
+/// controller's own times (gains with their times in seconds), the design's `longest_sample_time`, of an entry or a
+/// schedule, if it has one, and the shortest lag, in seconds, of what stands next to the controller in a structure. A
 /// fault of `sample_time` if there is none.
 std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const Json& request, const ParallelPid& gains,
-                                                 const Json& design);
+                                                 const Json& design,
+                                                 double shortest_lag = std::numeric_limits<double>::infinity());
 
 /// The law with times in seconds; its sample time is still to be set.
 SampledPid law_of(const AskedCode& asked, const ParallelPid& gains);

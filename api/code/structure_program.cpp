@@ -1,6 +1,7 @@
 #include "api/code/structure_program.h"
 
 #include <algorithm>
+#include <complex>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "api/code/parameters.h"
 #include "api/code/provenance.h"
 #include "engine/code/settings.h"
+#include "engine/numerics/polynomial_roots.h"
 #include "engine/structure/program/loop_programs.h"
 #include "engine/structure/program/predictor_program.h"
 
@@ -134,6 +136,30 @@ ParallelPid fastest(const AskedCode& asked, const std::vector<ParallelPid>& cont
     return law_of(asked, *std::ranges::min_element(controllers, {}, proposed)).gains;
 }
 
+/// Shortest lag of the compensator, or of the filter of the prediction's error, in seconds; infinite if there is none.
+double shortest_lag(const Json& answer, const AskedCode& asked) {
+    const std::string structure = answer.at("structure");
+    double out = std::numeric_limits<double>::infinity();
+    if (structure == "feedforward") {
+        const Json* compensator = chosen_compensator(answer, asked.question);
+        const double lag = compensator == nullptr ? 0 : compensator->at("Tp").get<double>() * asked.unit;
+        if (lag > 0) out = lag;
+    }
+    if (structure == "predictor")
+        for (const auto& pole : polynomial_roots(predictor_of(answer, asked.unit).F.den))
+            if (pole != 0.0) out = std::min(out, 1 / std::abs(pole));
+    return out;
+}
+
+/// As asked for, else that of the answer's simulation, else as for any program.
+std::variant<SampleTime, Problem> sample_time_for(const Json& answer, const Json& request, const AskedCode& asked,
+                                                  const std::vector<ParallelPid>& controllers) {
+    const Json::json_pointer simulated("/sampled/sample_time");
+    if (!asked.question.sample_time && answer.contains(simulated))
+        return SampleTime{answer.at(simulated).get<double>() * asked.unit, "as in the simulation of the answer"};
+    return sample_time_of(asked, request, fastest(asked, controllers), Json::object(), shortest_lag(answer, asked));
+}
+
 code::Provenance provenance_of_structure(const Json& answer, const Json& request) {
     code::Provenance rows = provenance_of(answer, Json::object(), request);
     rows.insert(rows.begin(), {"Structure", answer.at("structure").get<std::string>()});
@@ -150,7 +176,7 @@ std::variant<StructureProgram, Problem> structure_program(const Json& answer, co
     const auto controllers = controllers_in(answer, reader);
     if (auto problem = reader.problem()) return *std::move(problem);
     if (!controllers) return to_problem(controllers.error());
-    const auto sample_time = sample_time_of(asked, request, fastest(asked, *controllers), Json::object());
+    const auto sample_time = sample_time_for(answer, request, asked, *controllers);
     if (const auto* problem = std::get_if<Problem>(&sample_time)) return *problem;
     const auto& chosen = std::get<SampleTime>(sample_time);
     auto program = program_of({answer, asked, *controllers, chosen.seconds});

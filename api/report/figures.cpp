@@ -24,10 +24,12 @@ Html figure(const JsonLocation& place, int digits) {
     const Json& value = place.value();
     if (value.is_number())
         return element("span", number_text(value.get<double>(), digits), {{"data-at", place.pointer}});
+    return element("span", "–", {{"title", why_null(place)}});
+}
+
+std::string why_null(const JsonLocation& place) {
     const std::size_t slash = place.pointer.rfind('/');
-    const JsonLocation owner{place.root, place.pointer.substr(0, slash) + "/why_null" + place.pointer.substr(slash)};
-    const std::string why = text_at(owner);
-    return element("span", "–", {{"title", why}});
+    return text_at({place.root, place.pointer.substr(0, slash) + "/why_null" + place.pointer.substr(slash)});
 }
 
 bool negligible(double standard_error, double value) {

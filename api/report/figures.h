@@ -19,6 +19,9 @@ std::string number_text(double value, int digits = 4);
 /// A number as <span data-at="/controllers/0/...">1.385</span>; a dash and its reason if it is null.
 Html figure(const JsonLocation& place, int digits = 4);
 
+/// The reason next to a null; "" if there is none.
+std::string why_null(const JsonLocation& place);
+
 using Row = std::vector<Html>;
 
 /// True if any of these objects has a member of that name.

@@ -436,7 +436,9 @@ std::string structure_text(std::string_view answer) try {
         if (const Json::json_pointer place(one.pointer); value.contains(place))
             figures.row({one.name, number(value.at(place))});
     out += figures.text() + "\n";
-    for (const Json& conclusion : value.value("verdict", Json::array())) out += conclusion_sentence(conclusion) + "\n";
+    const std::string label = words(at(value, "/units/time")), time = label.empty() ? "s" : label;
+    for (const Json& conclusion : value.value("verdict", Json::array()))
+        out += conclusion_sentence(conclusion, time) + "\n";
     return out;
 } catch (const Json::exception&) {
     return std::string(answer) + "\n";

@@ -24,9 +24,7 @@ Error stopped() { return {ErrorKind::cancelled, "", "The design was stopped."}; 
 void add_settings(const StructureRequest& request, const std::string& loop, std::size_t place,
                   const IdealPid& controller, StructureAnswer& out) {
     if (request.devices.empty()) return;
-    const device::DeviceModel& device = request.devices.size() == 1
-                                            ? request.devices.front()
-                                            : request.devices[std::min(place, request.devices.size() - 1)];
+    const device::DeviceModel& device = request.devices[request.devices.size() == 1 ? 0 : place];
     if (device.product == nullptr) return;
     auto fitted = device::fit(device, controller);
     out.settings.push_back({loop, fitted ? OrReason<device::Fitted>(std::move(*fitted))

@@ -37,9 +37,14 @@ void check_question(const Json& value, CodeQuestion& question, Reader& reader) {
     if (question.tracking_time && (question.velocity || question.anti_windup == AntiWindup::clamping))
         reader.fault_at("tracking_time",
                         "tracking_time belongs to anti_windup back_calculation. Choose that, or leave it out.");
-    if (question.u_min && question.u_max && !(*question.u_min < *question.u_max))
-        reader.fault_at("u_max", "u_max is " + shown(value.at("u_max")) + " and u_min " + shown(value.at("u_min")) +
-                                     "; u_max must be > u_min.");
+    const auto ordered = [&](const std::string& low, const std::optional<double>& least, const std::string& high,
+                             const std::optional<double>& largest) {
+        if (least && largest && !(*least < *largest))
+            reader.fault_at(high, high + " is " + shown(value.at(high)) + " and " + low + " " + shown(value.at(low)) +
+                                      "; " + high + " must be > " + low + ".");
+    };
+    ordered("u_min", question.u_min, "u_max", question.u_max);
+    ordered("r2_min", question.r2_min, "r2_max", question.r2_max);
 }
 
 /// Sizes by name.

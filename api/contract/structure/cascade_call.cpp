@@ -260,7 +260,7 @@ const Description<CascadeRequest>& cascade_request_contract() {
         using R = CascadeRequest;
         using enum structure::Arrangement;
         Description<R> d("CascadeRequest", "Two controllers in series: design or judgement.");
-        add_structure_members(d, "cascade");
+        add_structure_members(d, "cascade", 2);
         d.field("inner", &R::inner, object(cascade_loop_contract()), "The inner loop.")
             .field("outer", &R::outer, object(cascade_loop_contract()), "The outer loop.")
             .field("record", &R::record, maybe(object(record_contract())),

@@ -174,7 +174,7 @@ const Description<FeedforwardRequest>& feedforward_request_contract() {
     static const auto description = [] {
         using R = FeedforwardRequest;
         Description<R> d("FeedforwardRequest", "A loop with feedback, and a disturbance that is measured.");
-        add_structure_members(d, "feedforward");
+        add_structure_members(d, "feedforward", 1);
         d.field("plant", &R::plant, linear_plant(), "From u to y.")
             .field("disturbance", &R::disturbance, linear_plant(), "From the measured disturbance to y.")
             .field("record", &R::record, maybe(object(record_contract())),

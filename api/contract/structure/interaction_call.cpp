@@ -114,6 +114,7 @@ void check_interaction(const Json&, InteractionRequest& request, Reader& reader)
             reader.fault_at(name, std::string(name) + " has " + std::to_string(given) + " entries; give " +
                                       std::to_string(n) + ", one for each output.");
     };
+    check_device_count(request, n, reader);
     count("controllers", request.controllers.given.size());
     if (request.baseline) count("baseline", request.baseline->given.size());
     {
@@ -265,7 +266,7 @@ const Description<InteractionRequest>& interaction_request_contract() {
         matrix.schema = matrix_schema;
         matrix.skip = [](const structure::PlantMatrix& plant) { return plant.empty(); };
         Description<R> d("InteractionRequest", "Two or three loops whose outputs depend on each other's inputs.");
-        add_structure_members(d, "interaction");
+        add_structure_members(d, "interaction", std::nullopt);
         d.field("plant", &R::plant, matrix,
                 "A row for each output, a column for each input; 0 or null: a path that is not there.")
             .field("records", &R::given_records, maybe(list_of(object(record_contract()), kMinLoops, kMaxLoops)),

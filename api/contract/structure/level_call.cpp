@@ -96,7 +96,7 @@ const Description<LevelRequest>& level_request_contract() {
             {{"rate", rate}, {"no_outflow_overshoot", no_overshoot}, {"zeta", structure::LevelAim::zeta}});
         Description<R> d("LevelRequest",
                          "A level that smooths flows: a vessel, its largest step, the room of the level.");
-        add_structure_members(d, "level");
+        add_structure_members(d, "level", 1);
         d.field("volume", into(&LevelProblem::area, positive), {}, positive.schema,
                 "Volume per unit of level, in the units of flow, time and level.",
                 {.required = true, .unit = "u time/y"})

@@ -119,7 +119,7 @@ const Description<PredictorRequest>& predictor_request_contract() {
         const auto Ms = number({.exclusive_minimum = 1, .exclusive_maximum = 2});
         const auto error = maybe(number({.exclusive_minimum = 0, .maximum = 1}));
         Description<R> d("PredictorRequest", "A loop with a long dead time.");
-        add_structure_members(d, "predictor");
+        add_structure_members(d, "predictor", 1);
         d.field("plant", &R::plant, linear_plant(), "The plant.", {.required = true})
             .field("model", &R::model, linear_plant(),
                    "The model in the controller, of first order or an integrator; default: the plant.")

@@ -222,6 +222,14 @@ void resolve_devices(StructureRequest& request, Reader& reader) {
     }
 }
 
+void check_device_count(const StructureRequest& request, std::size_t controllers, Reader& reader) {
+    const std::size_t given = request.implement.size();
+    if (given <= 1 || given == controllers) return;
+    const std::string rest =
+        controllers == 1 ? "." : " for all, or " + std::to_string(controllers) + ", one for each controller.";
+    reader.fault_at("implement", "implement has " + std::to_string(given) + " entries; give 1" + rest);
+}
+
 const Description<StructureTyping>& structure_typing_contract() {
     static const auto description = [] {
         using T = StructureTyping;

@@ -90,6 +90,8 @@ Json curves_schema(SchemaBook& book);
 
 /// Devices from `implement`; faults are at `implement`.
 void resolve_devices(StructureRequest& request, Reader& reader);
+/// Reports at `implement` a list with neither one entry nor one for each of so many controllers.
+void check_device_count(const StructureRequest& request, std::size_t controllers, Reader& reader);
 
 /// The member `structure`, which tells a job's request and its result apart from others.
 template <class T>
@@ -111,9 +113,9 @@ Codec<std::optional<Units>> units_with_level();  ///< in which y may be called l
 Codec<StructureRequest> drawing_wish();          ///< {"points": 200}
 Codec<StructureRequest> devices_wish();          ///< a device, or one for each controller
 
-/// The members of every request; the check of the devices' needs is that of the structure.
+/// The members of every request. `controllers`: how many there are; nothing: the structure's own check counts devices.
 template <class Request>
-void add_structure_members(Description<Request>& d, const char* structure) {
+void add_structure_members(Description<Request>& d, const char* structure, std::optional<std::size_t> controllers) {
     add_structure_name(d, structure);
     d.field("name", &Request::name, maybe(text(kMaxNameLength)), "A label, such as the loop's tag.")
         .field("units", &Request::units, units_with_level(), "Labels of the units, echoed; level is y.");
@@ -128,8 +130,9 @@ void add_structure_members(Description<Request>& d, const char* structure) {
         .field("sampled", &Request::sampled, maybe(object(sampled_wish_contract())),
                "Also run the program of the controllers call by call, with its limits and anti-windup. Signals are "
                "deviations from the operating point, limits are not.")
-        .check([structure](const Json&, Request& r, Reader& reader) {
+        .check([structure, controllers](const Json&, Request& r, Reader& reader) {
             resolve_devices(r, reader);
+            if (controllers) check_device_count(r, *controllers, reader);
             const Reader::At at(reader, "sampled");
             if (r.sampled) refuse_others(*r.sampled, structure, reader);
         });

@@ -23,7 +23,7 @@ JsonLocation place_of(const ReportInput& s, const std::string& pointer) {
 Html conclusions_of(const ReportInput& s) {
     std::vector<Html> sentences;
     for (const Json& conclusion : s.result.at("verdict").value())
-        sentences.emplace_back(conclusion_sentence(conclusion));
+        sentences.emplace_back(conclusion_sentence(conclusion, s.time));
     if (s.result.at("partial").value() == true)
         sentences.emplace_back("The search was stopped before its end; this is the best result until then.");
     return section("Verdict", list(sentences));
@@ -103,13 +103,21 @@ Html settings_of(const ReportInput& s, const std::string& structure) {
     return section("Settings", out + other_settings(s, structure) + typed_of(s));
 }
 
+std::string unit_of(const StructureFigure& figure, const ReportInput& s) {
+    if (figure.unit == "time") return s.time;
+    if (figure.unit == "y") return s.y;
+    if (figure.unit == "y time") return s.y.empty() ? s.time : s.y + " " + s.time;
+    return figure.unit == "u/time" ? unit_quotient(s.u, s.time) : "";
+}
+
 Html figures_table(const ReportInput& s) {
     std::vector<Row> rows;
     for (const StructureFigure& one : structure_figures(s.result.value())) {
         const JsonLocation place = place_of(s, one.pointer);
-        const std::string unit = one.unit == "time" ? s.time : one.unit == "y" ? s.y : "";
-        if (s.result.value().contains(Json::json_pointer(one.pointer)))
-            rows.push_back({with_unit(one.name, unit), figure(place)});
+        if (!s.result.value().contains(Json::json_pointer(one.pointer))) continue;
+        const std::string why = place.exists() ? "" : why_null(place);
+        // A title is not seen on paper.
+        rows.push_back({with_unit(one.name, unit_of(one, s)), figure(place) + (why.empty() ? "" : " " + why)});
     }
     return section("Figures", table("", {"", ""}, rows));
 }

@@ -36,7 +36,7 @@ constexpr Word kInputs[] = {{"setpoint", "Set point"},        {"inner_load", "Lo
                             {"outer_load", "Outer load"},     {"disturbance", "Disturbance"},
                             {"inflow", "Step of the inflow"}, {"load", "Load"}};
 
-/// Sentences with {names} of figures.
+/// Sentences with {names} of figures, and {time} for the unit after one.
 constexpr Word kConclusions[] = {
     {"unstable", "The loops are not stable together."},
     {"cascade-pays",
@@ -70,7 +70,8 @@ constexpr Word kConclusions[] = {
     {"predictor-pays", "The predictor pays: IAE {IAE}, with a PID of the same Ms {IAE_pid}."},
     {"limited-by-dead-time-error", "The allowed error of the dead time, not Ms, limits the design."},
     {"narrow-dead-time-window",
-     "An error of the dead time by the share {window} makes the loop unstable; below {at_least} it is hardly usable."},
+     "An error of the dead time of {window}{time} makes the loop unstable; below {at_least}{time} it is hardly "
+     "usable."},
     {"controller-unstable", "The controller by itself is not stable: it must not run without its feedback."},
     {"pairing-impossible", "This pairing cannot be stable with integral action and one loop in manual."},
     {"other-pairing-better", "Another pairing interacts less."},
@@ -89,6 +90,14 @@ std::string word_for(const Word (&words)[N], std::string_view code) {
 std::size_t length_at(const Json& result, const char* pointer) {
     const Json::json_pointer place(pointer);
     return result.contains(place) && result.at(place).is_array() ? result.at(place).size() : 0;
+}
+
+/// The place of the controllers' pairing among `pairings`.
+std::size_t chosen_pairing(const Json& result) {
+    std::size_t i = 0;
+    const std::size_t count = length_at(result, "/pairings");
+    while (i < count && result["pairings"][i].value("inputs", Json()) != result.value("pairing", Json())) ++i;
+    return i;
 }
 
 using Figures = std::vector<StructureFigure>;
@@ -112,8 +121,9 @@ const Figures& cascade_figures() {
 const Figures& level_figures() {
     static const Figures figures{{"Highest level", "/design/highest", "y"},
                                  {"Time of it", "/design/time_of_highest", "time"},
-                                 {"Largest rate of the outflow", "/design/largest_rate", ""},
-                                 {"Least rate of any controller", "/bound", ""},
+                                 {"Gap in which the controller rests", "/gap", "y"},
+                                 {"Largest rate of the outflow", "/design/largest_rate", "u/time"},
+                                 {"Least rate of any controller", "/bound", "u/time"},
                                  {"Overshoot of the outflow, %", "/design/overshoot_percent", ""},
                                  {"Ms with the flow loop", "/robustness/Ms", ""}};
     return figures;
@@ -143,9 +153,10 @@ Figures feedforward_figures(const Json& result) {
 
 Figures interaction_figures(const Json& result) {
     Figures out{{"Structured peak mu", "/mu", ""}, {"Cost: weighted sum of the IAE after loads", "/cost", ""}};
+    const std::string gains = "/pairings/" + std::to_string(chosen_pairing(result)) + "/relative_gains/";
     for (std::size_t i = 0; i < length_at(result, "/controllers"); ++i) {
         const std::string place = std::to_string(i), loop = std::to_string(i + 1);
-        out.push_back({"Relative gain of loop " + loop, "/pairings/0/relative_gains/" + place, ""});
+        out.push_back({"Relative gain of loop " + loop, gains + place, ""});
         out.push_back({"Ms of loop " + loop + ", others in manual", "/Ms_alone/" + place, ""});
         out.push_back({"Ms of loop " + loop + ", others in automatic", "/Ms_others_closed/" + place, ""});
     }
@@ -159,14 +170,17 @@ Figures interaction_figures(const Json& result) {
 
 std::string structure_title(std::string_view structure) { return word_for(kStructures, structure); }
 
-std::string conclusion_sentence(const Json& conclusion) {
+std::string conclusion_sentence(const Json& conclusion, const std::string& time) {
     std::string out = word_for(kConclusions, conclusion.value("code", ""));
-    const Json figures = conclusion.value("figures", Json::object());
-    for (const auto& [name, value] : figures.items()) {
+    const auto put = [&](const std::string& name, const std::string& text) {
         const std::string place = "{" + name + "}";
         for (std::size_t at = out.find(place); at != out.npos; at = out.find(place))
-            out.replace(at, place.size(), value.is_number() ? number_text(value.get<double>(), 3) : "unknown");
-    }
+            out.replace(at, place.size(), text);
+    };
+    const Json figures = conclusion.value("figures", Json::object());
+    for (const auto& [name, value] : figures.items())
+        put(name, value.is_number() ? number_text(value.get<double>(), 3) : "unknown");
+    put("time", time.empty() ? "" : " " + time);
     return out;
 }
 
@@ -176,8 +190,12 @@ std::vector<StructureController> structure_controllers(const Json& result) {
     if (structure == "feedforward") return {{"Feedback", "/feedback"}};
     if (structure == "predictor") return {{"PID in its place", "/pid"}};
     std::vector<StructureController> out;
-    for (std::size_t i = 0; structure == "interaction" && i < length_at(result, "/controllers"); ++i)
-        out.push_back({"Loop " + std::to_string(i + 1), "/controllers/" + std::to_string(i)});
+    const std::size_t inputs = length_at(result, "/pairing");
+    for (std::size_t i = 0; structure == "interaction" && i < length_at(result, "/controllers"); ++i) {
+        const std::string number = std::to_string(i + 1);
+        const std::string pair = i < inputs ? ": y" + number + " by u" + result["pairing"][i].dump() : "";
+        out.push_back({"Loop " + number + pair, "/controllers/" + std::to_string(i)});
+    }
     return out;
 }
 

@@ -12,17 +12,18 @@ namespace tunewright::api {
 /// "Cascade" for "cascade"; an unknown name unchanged.
 std::string structure_title(std::string_view structure);
 
-/// {"code", "figures"} as a sentence; an unknown code unchanged.
-std::string conclusion_sentence(const Json& conclusion);
+/// {"code", "figures"} as a sentence, with the label of the unit of time; an unknown code unchanged.
+std::string conclusion_sentence(const Json& conclusion, const std::string& time);
 
-/// A controller of the answer by its place, with its name.
+/// A controller of the answer by its place, with its name: "Outer", "Loop 1: y1 by u2".
 struct StructureController {
     std::string name, pointer;
 };
 /// Those that are typed, in the order of the answer.
 std::vector<StructureController> structure_controllers(const Json& result);
 
-/// A figure of the answer by its place: "Ms of the inner loop", "/inner/robustness/Ms". `unit`: "time", "y time" or "".
+/// A figure of the answer by its place: "Ms of the inner loop", "/inner/robustness/Ms". `unit`: "time", "y", "y time",
+/// "u/time" or "".
 struct StructureFigure {
     std::string name, pointer, unit;
 };

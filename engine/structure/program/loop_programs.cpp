@@ -1,6 +1,7 @@
 #include "engine/structure/program/loop_programs.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "engine/code/composer.h"
@@ -29,6 +30,19 @@ Expected<Program> part(const SampledPid& pid, const CodeOptions& options, const 
 }
 
 std::string note(const Program& program, PidNote which) { return program.notes[static_cast<std::size_t>(which)]; }
+
+/// The program with this name of its output in its comments.
+Program with_output(Program program, const std::string& name) {
+    const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    for (code::Declaration& one : program.variables) {
+        std::string& words = one.comment;
+        for (std::size_t i = 0; i < words.size(); ++i) {
+            const bool ends = i + 1 == words.size() || !is_letter(words[i + 1]);
+            if (words[i] == 'u' && ends && (i == 0 || !is_letter(words[i - 1]))) words.replace(i, 1, name);
+        }
+    }
+    return program;
+}
 
 std::optional<Error> refused(const Feedforward& part, double Ts, const std::string& where) {
     const double least = std::min({part.Tz, part.Tp, part.Lf});
@@ -148,7 +162,7 @@ Expected<Program> cascade_program(const SampledPid& inner, const SampledPid& out
     const Expr start = whole.let("r2_start", "r2 in a first call", y2);
     whole.add(when(whole["at_rest"], {assign(start, rest)}));
     whole.add(code::remark("The outer controller."));
-    whole.embed(*C1,
+    whole.embed(with_output(*C1, "r2"),
                 {{"setpoint", "setpoint"},
                  {"measurement", "measurement"},
                  {"manual", "follows"},

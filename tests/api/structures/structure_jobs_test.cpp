@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/code/code.h"
+#include "api/code/structure_program.h"
 #include "api/report/report.h"
 #include "api/report/structure/structure_words.h"
 #include "api/report/terminal.h"
@@ -181,11 +182,11 @@ TEST(StructureJobs, NoPointsMeanNoSeries) {
 TEST(StructureJobs, EveryConclusionHasASentenceWithItsFigures) {
     for (const auto code : structure::all_conclusion_codes()) {
         const Json conclusion{{"code", structure::to_string(code)}, {"figures", Json::object()}};
-        EXPECT_NE(conclusion_sentence(conclusion), structure::to_string(code));
+        EXPECT_NE(conclusion_sentence(conclusion, "s"), structure::to_string(code));
     }
     for (const StructureCase& one : structure_cases())
         for (const Json& conclusion : called(one)["verdict"])
-            EXPECT_THAT(conclusion_sentence(conclusion), Not(HasSubstr("{"))) << conclusion;
+            EXPECT_THAT(conclusion_sentence(conclusion, "s"), Not(HasSubstr("{"))) << conclusion;
 }
 
 TEST(StructureJobs, AReportATableAndAProgramInEachLanguage) {
@@ -211,6 +212,122 @@ TEST(StructureJobs, AReportATableAndAProgramInEachLanguage) {
         ASSERT_TRUE(std::holds_alternative<Problem>(wrong));
         EXPECT_THAT(to_json(std::get<Problem>(wrong)), HasSubstr("belongs to the code of a"));
     }
+}
+
+std::string report_of(const StructureCase& one) {
+    const auto page = report_html({called(one).dump(), one.request.dump()}, "", {});
+    return std::holds_alternative<std::string>(page) ? std::get<std::string>(page) : std::get<Problem>(page).detail;
+}
+
+TEST(StructureReports, TimesOfAConclusionHaveTheirUnit) {
+    StructureCase one = structure_cases()[4];
+    one.request = {{"plant", "e^(-8s)/(s+1)"},
+                   {"units", {{"time", "min"}}},
+                   {"controller", {{"C", {{"num", {1.8, 4}}, {"den", {1, 0}}}}, {"F", {{"num", {1}}, {"den", {1}}}}}}};
+    const char* limit = " min makes the loop unstable; below 2 min it is hardly usable.";  // a quarter of the dead time
+    EXPECT_THAT(report_of(one), HasSubstr(limit));
+    EXPECT_THAT(structure_text(called(one).dump()), HasSubstr(limit));
+}
+
+TEST(StructureReports, FiguresAreThoseOfTheChosenPairing) {
+    StructureCase one = structure_cases()[3];
+    one.request["pairing"] = {2, 1};
+    one.request["controllers"] = Json::array({Json{{"Kp", -0.01}, {"Ti", 40}}, Json{{"Kp", 0.01}, {"Ti", 40}}});
+    const Json answer = called(one);
+    double gain = 0;
+    for (const StructureFigure& figure : structure_figures(answer))
+        if (figure.name == "Relative gain of loop 1") gain = answer.at(Json::json_pointer(figure.pointer));
+    EXPECT_NEAR(gain, 1 - 2.009, 1e-3);  // the rows of the relative gains have the sum 1
+    EXPECT_THAT(report_of(one), HasSubstr("Loop 1: y1 by u2"));
+    EXPECT_THAT(structure_text(answer.dump()), HasSubstr("Loop 2: y2 by u1"));
+}
+
+TEST(StructureReports, FiguresHaveTheirUnitsAndNullsTheirReasons) {
+    StructureCase cascade = structure_cases()[0];
+    EXPECT_THAT(report_of(cascade), HasSubstr("IAE after an outer load (s)"));
+    cascade.request["units"] = {{"time", "min"}, {"y", "degC"}};
+    EXPECT_THAT(report_of(cascade), HasSubstr("IAE after an outer load (degC min)"));
+
+    StructureCase level = structure_cases()[1];
+    level.request["aim"] = "no_outflow_overshoot";
+    level.request["gap"] = 0.125;
+    level.request["units"] = {{"time", "min"}, {"level", "m"}};
+    EXPECT_THAT(report_of(level), HasSubstr("Gap in which the controller rests (m)"));
+    EXPECT_THAT(report_of(level), HasSubstr("0.125"));
+
+    StructureCase predictor = structure_cases()[4];
+    predictor.request = {
+        {"plant", {{"type", "fopdt"}, {"K", -1}, {"T", -4}, {"L", 0.5}}}, {"kind", "filtered_smith"}, {"Ms", 1.9}};
+    const std::string page = report_of(predictor);
+    const std::size_t row = page.find("IAE after a load");
+    ASSERT_NE(row, std::string::npos);
+    const std::string cells = page.substr(row, page.find("</tr>", row) - row);
+    EXPECT_THAT(cells.substr(cells.find("</span>")), HasSubstr("unstable model"));
+}
+
+/// The program without the comments in front of it.
+std::string class_of(const StructureCase& one, const Json& answer, CodeWords words) {
+    words.emplace_back("language", "python");
+    const auto code = structure_code({answer.dump(), one.request.dump()}, words);
+    if (const auto* problem = std::get_if<Problem>(&code)) return to_json(*problem);
+    const std::string& program = std::get<ControllerCode>(code).text;
+    return program.substr(std::min(program.find("\nclass "), program.size()));
+}
+
+TEST(StructurePrograms, TheyAreTheSimulatedOne) {
+    StructureCase one = structure_cases()[0];
+    const Json plain = called(one);
+    const CodeWords words{{"sample_time", "0.5"}, {"u_min", "-1"},
+                          {"u_max", "1"},         {"r2_max", "7"},
+                          {"rate_limit", "0.25"}, {"anti_windup", "clamping"},
+                          {"bias", "0.75"},       {"derivative", "difference"}};
+    const std::string wanted = class_of(one, plain, words);
+    one.request["sampled"] = {{"steps", {{"setpoint", 2}}}};
+    for (const auto& [name, word] : words) {
+        const Json number = Json::parse(word, nullptr, false);
+        one.request["sampled"][name] = number.is_number() ? number : Json(word);
+    }
+    const Json simulated = called(one);
+    EXPECT_EQ(class_of(one, simulated, {}), wanted);
+    EXPECT_NE(class_of(one, simulated, {{"u_max", "0.5"}}), wanted);
+    EXPECT_EQ(class_of(one, simulated, {{"u_max", "1"}, {"sample_time", "0.5"}}), wanted);
+    one.request["sampled"]["anti_windup"] = "back_calculation";
+    one.request["sampled"]["tracking_time"] = 3;
+    EXPECT_EQ(class_of(one, called(one), {{"anti_windup", "clamping"}}), wanted);
+
+    one.request.erase("sampled");
+    one.request["implement"] = Json::array({Json{{"sample_time", 0.25}}, Json{{"sample_time", 0.25}}});
+    EXPECT_EQ(class_of(one, called(one), {}), class_of(one, plain, {{"sample_time", "0.25"}}));
+}
+
+TEST(StructurePrograms, TheProposedSampleTimeResolvesEveryLag) {
+    const auto proposed = [](const Json& answer, const char* compensator) {
+        AskedCode asked;
+        if (*compensator != 0) asked.question.compensator = compensator;
+        const auto made = structure_program(answer, Json(), asked);
+        return std::holds_alternative<StructureProgram>(made) ? std::get<StructureProgram>(made).sample_time.seconds
+                                                              : -1;
+    };
+    const Json feedforward = called(structure_cases()[2]);
+    EXPECT_EQ(proposed(feedforward, "static"), 5);   // a tenth of Ti = 60, rounded down
+    EXPECT_EQ(proposed(feedforward, "inverse"), 1);  // a tenth of the disturbance's lag, 15
+    StructureCase predictor = structure_cases()[4];
+    predictor.request["controller"] = {{"C", {{"num", {2.5, 0.5}}, {"den", {5, 0}}}},
+                                       {"F", {{"num", {1}}, {"den", {0.06, 0.5, 1}}}}};  // lags 0.2 and 0.3
+    predictor.request.erase("Ms");
+    EXPECT_EQ(proposed(called(predictor), ""), 0.02);
+}
+
+TEST(StructurePrograms, CommentsOfTheOuterControllerNameItsOutput) {
+    const auto code = structure_code({called(structure_cases()[0]).dump(), ""}, {{"language", "st"}});
+    const auto& text = std::get<ControllerCode>(code).text;
+    const auto count = [&](const std::string& words) {
+        int found = 0;
+        for (std::size_t at = text.find(words); at != text.npos; at = text.find(words, at + 1)) ++found;
+        return found;
+    };
+    for (const char* words : {"least ", "largest ", "largest change of "})
+        for (const char* name : {"u", "r2"}) EXPECT_EQ(count(std::string(words) + name + " "), 1) << words << name;
 }
 
 TEST(StructureJobs, ASampledRunComesCloseToTheContinuousLoops) {
@@ -278,6 +395,38 @@ TEST(StructureJobs, SettingsOfAProductForEachController) {
     EXPECT_NEAR(answer["settings"][1]["typing"]["settings"]["GAIN"].get<double>(), 4 * outer, 0.01 * 4 * outer);
     one.request["implement"] = {{"product", "no such"}};
     EXPECT_THAT(one.call(one.request.dump(), {}).body, HasSubstr("/implement/product"));
+}
+
+TEST(StructureJobs, AProductForAllOrOneForEachController) {
+    const auto refusal = [](std::size_t place, std::size_t entries) {
+        StructureCase one = structure_cases()[place];
+        one.request["implement"] = Json::array();
+        for (std::size_t i = 0; i < entries; ++i) one.request["implement"].push_back({{"sample_time", 0.1}});
+        const Answer answer = one.call(one.request.dump(), {});
+        return answer.status == 200 ? "" : answer.body;
+    };
+    const std::size_t controllers[] = {2, 1, 1, 2, 1};
+    for (std::size_t place = 0; place < 5; ++place)
+        for (std::size_t entries = 1; entries <= 3; ++entries) {
+            SCOPED_TRACE(structure_cases()[place].name + " " + std::to_string(entries));
+            if (entries == 1 || entries == controllers[place])
+                EXPECT_EQ(refusal(place, entries), "");
+            else
+                EXPECT_THAT(refusal(place, entries), HasSubstr("\"/implement\""));
+        }
+}
+
+TEST(StructureJobs, FaultsOfASampledProgramNameItsMembers) {
+    StructureCase cascade = structure_cases()[0];
+    cascade.request["sampled"] = {{"r2_min", 5}, {"r2_max", 1}};
+    const std::string body = cascade.call(cascade.request.dump(), {}).body;
+    EXPECT_THAT(body, HasSubstr("\"/sampled/r2_max\""));
+    EXPECT_THAT(body, HasSubstr("r2_max must be > r2_min"));
+    for (const std::size_t place : {0, 2, 3, 4}) {
+        StructureCase one = structure_cases()[place];
+        one.request["sampled"] = {{"sample_time", 1e-9}};
+        EXPECT_THAT(one.call(one.request.dump(), {}).body, HasSubstr("\"/sampled/sample_time\"")) << one.name;
+    }
 }
 
 /// A first-order lag with dead time, called every 0.5.

@@ -16,7 +16,7 @@
 
 namespace tunewright::api {
 
-/// What a job is about.
+/// The subject of a job.
 enum class JobSubject { loop, range, check, structure };
 
 /// A tuning request that has been read and found valid.

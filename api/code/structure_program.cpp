@@ -18,7 +18,7 @@ namespace {
 
 using structure::Feedforward;
 
-/// What every program needs: the answer, the parameters, and the controllers, whose times are in the answer's unit.
+/// The answer and the parameters of a program, with the controllers, whose times are in the answer's unit.
 struct Source {
     const Json& answer;
     const AskedCode& asked;

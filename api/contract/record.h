@@ -76,7 +76,7 @@ void check_disturbances(const Record& record, bool from_csv, Reader& reader);
 /// The warning unknown-mode, if there are unknown modes.
 std::optional<Warning> mode_warning(const ReadRecord& read);
 
-/// What is wrong with the record as it was read, a sentence each; how it was read is in its notes.
+/// The faults of the record as it was read, a sentence each; its notes say how it was read.
 std::vector<std::string> reading_faults(const ReadRecord& read);
 
 /// Adds the findings of reading the record to the model.

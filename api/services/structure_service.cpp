@@ -20,7 +20,7 @@ using structure::CascadeResult;
 
 Error stopped() { return {ErrorKind::cancelled, "", "The design was stopped."}; }
 
-/// What is typed into the user's product for the controller number `place`.
+/// Adds the settings of the user's product for the controller number `place`.
 void add_settings(const StructureRequest& request, const std::string& loop, std::size_t place,
                   const IdealPid& controller, StructureAnswer& out) {
     if (request.devices.empty()) return;

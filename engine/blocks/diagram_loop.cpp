@@ -16,7 +16,7 @@ constexpr int kPointsPerDecade = 24;
 constexpr double kGridStep = 0.1;  // change of S between neighbours
 constexpr double kAtEnd = 1e-3;    // of S: the same from here to the end of the axis
 constexpr int kMostDecades = 8;    // beyond the corners
-// Of all dead times together: those of a slow outer loop turn thousands of times below the peaks of a fast inner one.
+// Turns of all dead times together: a slow outer loop has thousands of them below the peaks of a fast inner one.
 constexpr double kTurnsResolved = 5000;
 
 struct Band {

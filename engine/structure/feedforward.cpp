@@ -30,23 +30,6 @@ struct Diagram {
     int d = 0, y = 0, u = 0;
 };
 
-/// Both paths to y. Integrators that they share stand behind their sum: one of the disturbance alone would be in no
-/// loop.
-void add_paths(const LinearPlant& plant, const LinearPlant& disturbance, Diagram& out) {
-    const int shared = std::min(plant.integrators(), disturbance.integrators());
-    if (shared <= 0) {
-        out.blocks.add(out.u, out.y, plant);
-        out.blocks.add(out.d, out.y, disturbance);
-        return;
-    }
-    const int sum = out.blocks.add_signal();
-    out.blocks.add(out.u, sum, times_s(plant, shared));
-    out.blocks.add(out.d, sum, times_s(disturbance, shared));
-    out.blocks.add(sum, out.y,
-                   std::move(*LinearPlant::make(Plant(
-                       Zpk{.K = 1, .zeros = {}, .poles = std::vector<std::complex<double>>(std::size_t(shared))}))));
-}
-
 Expected<Diagram> diagram_of(const LinearPlant& plant, const LinearPlant& disturbance, const IdealPid& feedback,
                              const std::optional<Feedforward>& f) {
     Diagram out;
@@ -55,7 +38,7 @@ Expected<Diagram> diagram_of(const LinearPlant& plant, const LinearPlant& distur
     const auto loop = add_pid(out.blocks, to_parallel(feedback), out.y);
     if (!loop) return loop.error();
     out.u = loop->output;
-    add_paths(plant, disturbance, out);
+    add_row(out.blocks, {{out.u, &plant}, {out.d, &disturbance}}, out.y);
     if (!f || f->Kf == 0) return out;
     if (f->Tp > 0)
         out.blocks.add(out.d, out.u,

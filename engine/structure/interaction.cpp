@@ -54,35 +54,6 @@ struct LoopsDiagram {
     std::vector<int> y, u, r;  ///< r: the controller's error; -1 for a loop in manual
 };
 
-/// The plant times s^n.
-LinearPlant without_integrators(const LinearPlant& plant, int n) {
-    Zpk out = factors_of(plant);
-    for (int i = 0; i < n; ++i) out.poles.erase(std::ranges::find(out.poles, Complex(0)));
-    return std::move(*LinearPlant::make(Plant(out)));
-}
-
-/// Plants from several inputs to one output. Integrators that they share stand behind their sum: as one in each they
-/// would be modes that no controller moves.
-void add_row(BlockDiagram& blocks, const std::vector<std::pair<int, const LinearPlant*>>& row, int y) {
-    int integrating = 0, shared = 0;
-    for (const auto& [u, plant] : row)
-        if (plant->integrators() > 0) {
-            shared = integrating == 0 ? plant->integrators() : std::min(shared, plant->integrators());
-            ++integrating;
-        }
-    if (integrating < 2) shared = 0;
-    const int sum = shared > 0 ? blocks.add_signal() : y;
-    if (shared > 0)
-        blocks.add(sum, y,
-                   std::move(*LinearPlant::make(
-                       Plant(Zpk{.K = 1, .zeros = {}, .poles = std::vector<Complex>(std::size_t(shared))}))));
-    for (const auto& [u, plant] : row)
-        if (shared > 0 && plant->integrators() > 0)
-            blocks.add(u, sum, without_integrators(*plant, shared));
-        else
-            blocks.add(u, y, *plant);
-}
-
 /// Plants of loops in manual are outside every loop and left out: their integrators and unstable poles are not the
 /// loops'.
 Expected<LoopsDiagram> diagram_of(const PlantMatrix& plants, const std::vector<IdealPid>& controllers,

@@ -1,11 +1,11 @@
 #include "engine/structure/loop_design.h"
 
-#include <utility>
-
-#include <complex>
-
 #include <algorithm>
+#include <complex>
+#include <utility>
+#include <vector>
 
+#include "engine/blocks/block_diagram.h"
 #include "engine/tuning/robust/robust.h"
 
 namespace tunewright::structure {
@@ -28,12 +28,6 @@ Zpk factors_of(const LinearPlant& plant) {
     return out;
 }
 
-LinearPlant times_s(const LinearPlant& plant, int n) {
-    Zpk out = factors_of(plant);
-    for (int i = 0; i < n; ++i) out.poles.erase(std::ranges::find(out.poles, std::complex<double>(0)));
-    return std::move(*LinearPlant::make(Plant(out)));
-}
-
 Zpk factors_of(const LinearPlant& first, const LinearPlant& second) {
     Zpk out = factors_of(first);
     const Zpk other = factors_of(second);
@@ -42,6 +36,37 @@ Zpk factors_of(const LinearPlant& first, const LinearPlant& second) {
     out.zeros.insert(out.zeros.end(), other.zeros.begin(), other.zeros.end());
     out.poles.insert(out.poles.end(), other.poles.begin(), other.poles.end());
     return out;
+}
+
+namespace {
+
+/// The plant times s^n.
+LinearPlant without_integrators(const LinearPlant& plant, int n) {
+    Zpk out = factors_of(plant);
+    for (int i = 0; i < n; ++i) out.poles.erase(std::ranges::find(out.poles, std::complex<double>(0)));
+    return std::move(*LinearPlant::make(Plant(out)));
+}
+
+}  // namespace
+
+void add_row(BlockDiagram& blocks, const PlantRow& row, int y) {
+    int integrating = 0, shared = 0;
+    for (const auto& [u, plant] : row)
+        if (plant->integrators() > 0) {
+            shared = integrating == 0 ? plant->integrators() : std::min(shared, plant->integrators());
+            ++integrating;
+        }
+    if (integrating < 2) shared = 0;
+    const int sum = shared > 0 ? blocks.add_signal() : y;
+    if (shared > 0)
+        blocks.add(sum, y,
+                   std::move(*LinearPlant::make(Plant(
+                       Zpk{.K = 1, .zeros = {}, .poles = std::vector<std::complex<double>>(std::size_t(shared))}))));
+    for (const auto& [u, plant] : row)
+        if (shared > 0 && plant->integrators() > 0)
+            blocks.add(u, sum, without_integrators(*plant, shared));
+        else
+            blocks.add(u, y, *plant);
 }
 
 }  // namespace tunewright::structure

@@ -1,12 +1,19 @@
 // One loop of a structure by the method robust, and plants by their factors.
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/progress.h"
 #include "engine/tuning/limits.h"
 #include "engine/tuning/method/rule.h"
+
+namespace tunewright {
+class BlockDiagram;
+}
 
 namespace tunewright::structure {
 
@@ -22,10 +29,14 @@ Expected<IdealPid> robust_settings(const LinearPlant& plant, const LoopDesign& d
 /// Gain, zeros, poles and dead time of the plant, integrators included.
 Zpk factors_of(const LinearPlant& plant);
 
-/// The plant times s^n, n at most the number of its integrators.
-LinearPlant times_s(const LinearPlant& plant, int n);
-
 /// The product of two plants, without cancellation.
 Zpk factors_of(const LinearPlant& first, const LinearPlant& second);
+
+/// Plants with the signals that drive them.
+using PlantRow = std::vector<std::pair<int, const LinearPlant*>>;
+
+/// Adds plants from several inputs to one output. Integrators that they share stand behind their sum: as one in each
+/// they would be modes that no controller moves.
+void add_row(BlockDiagram& blocks, const PlantRow& row, int y);
 
 }  // namespace tunewright::structure

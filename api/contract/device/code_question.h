@@ -22,8 +22,8 @@ struct CodeQuestion {
     bool velocity = false;
     std::optional<code::AntiWindup> anti_windup;
     std::optional<double> tracking_time, u_min, u_max, rate_limit, bias, y0;
-    /// Of a structure: range of r2 and its value at the operating point of a cascade; disturbance there, and which
-    /// compensator, of a feedforward.
+    /// For a cascade: the range of r2, and r2 at the operating point. For a feedforward: the disturbance at the
+    /// operating point, and the kind of compensator.
     std::optional<double> r2_min, r2_max, r2_bias, d0;
     std::optional<std::string> compensator;
 };

@@ -1,8 +1,7 @@
 #include "api/contract/structure/feedforward_call.h"
 
-#include <initializer_list>
-
 #include <cmath>
+#include <initializer_list>
 
 namespace tunewright::api {
 namespace {

@@ -25,7 +25,7 @@ struct NamedRecord {
     ReadRecord read;
 };
 
-/// What was identified from one.
+/// The model of a record.
 struct NamedModel {
     std::string name;
     IdentifiedModel model;

@@ -29,7 +29,7 @@ Html conclusions_of(const ReportInput& s) {
     return section("Verdict", list(sentences));
 }
 
-/// What else is typed: the compensators, the predictor, the level controller.
+/// Settings other than those of PID controllers: compensators, predictor, level controller.
 Html other_settings(const ReportInput& s, const std::string& structure) {
     const auto numbers = [&](const JsonLocation& at, std::initializer_list<const char*> names) {
         Row row;
@@ -66,7 +66,7 @@ Html other_settings(const ReportInput& s, const std::string& structure) {
                  {"", "Kf", with_unit("Tz", s.time), with_unit("Tp", s.time), with_unit("Lf", s.time)}, rows);
 }
 
-/// What is typed into the user's products.
+/// The settings of the user's products.
 Html typed_of(const ReportInput& s) {
     Html out;
     const JsonLocation settings = s.result.at("settings");

@@ -180,7 +180,7 @@ test("structures keep what was typed; Back returns; a late answer of another str
     await page.getByRole("tab", { name: "Interaction" }).click();
     await page.getByText("Designing...").waitFor();
     await page.getByRole("tab", { name: "Level" }).click();
-    await page.locator('.verdict h2[data-code="near-lowest-rate"]').waitFor();
+    await page.locator('.verdict h2[data-code="level-above-room"]').waitFor();
     go();
     await page.getByRole("tab", { name: "Predictor" }).click();
     await page.waitForURL(/predictor\?.*Ms=1\.5/);

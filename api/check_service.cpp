@@ -14,6 +14,7 @@
 #include "api/historian/tags/loop_tags.h"
 #include "api/json/json.h"
 #include "api/json/writer.h"
+#include "api/services/job_outcome.h"
 
 namespace tunewright::api {
 namespace {
@@ -96,22 +97,14 @@ std::string outline_of(const CheckResult& result, const std::optional<Units>& un
 }
 
 JobOutcome outcome_of(Expected<CheckResult> result, CheckAnswer rest) {
-    JobOutcome outcome;
-    outcome.method = "check";
-    if (!result) {
-        outcome.status = JobOutcome::Status::cancelled;
-        if (result.error().kind == ErrorKind::cancelled) return outcome;
-        outcome.status = JobOutcome::Status::failed;
-        outcome.error_json = to_json(to_problem(result.error()));
-        return outcome;
-    }
-    outcome.status = result->partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
-    outcome.outline_json = outline_of(*result, rest.units);
+    if (!result)
+        return without_result("check", to_problem(result.error()), result.error().kind == ErrorKind::cancelled);
+    const bool partial = result->partial;
+    std::string outline = outline_of(*result, rest.units);
     Writer out;
     rest.check = std::move(*result);
     check_result_contract().write(rest, out);
-    outcome.result_json = out.take();
-    return outcome;
+    return with_result("check", partial, std::move(outline), out.take());
 }
 
 /// True if every member but the loops is that of the first request, or left to it.

@@ -7,6 +7,7 @@
 #include "api/contract/range/range_request.h"
 #include "api/contract/range/range_result.h"
 #include "api/describe/body.h"
+#include "api/services/job_outcome.h"
 
 namespace tunewright::api {
 namespace {
@@ -61,23 +62,15 @@ std::string outline_of(const RangeContent& content, const std::optional<Units>& 
 }  // namespace
 
 JobOutcome range_outcome(RangeRequest request, std::string_view hash, const RunControl& control) {
-    JobOutcome outcome;
-    outcome.method = "range";
     auto result = answered_range(request, control);
-    if (!result) {
-        outcome.status = JobOutcome::Status::cancelled;
-        if (result.error().kind == ErrorKind::cancelled) return outcome;
-        outcome.status = JobOutcome::Status::failed;
-        outcome.error_json = to_json(problem_of(result.error(), request));
-        return outcome;
-    }
-    outcome.status = result->design.partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
+    if (!result)
+        return without_result("range", problem_of(result.error(), request),
+                              result.error().kind == ErrorKind::cancelled);
+    const bool partial = result->design.partial;
     const RangeAnswer answer{RangeContent(std::move(*result)), request.units, std::string(hash)};
-    outcome.outline_json = outline_of(answer.range, answer.units);
     Writer out;
     range_result_contract().write(answer, out);
-    outcome.result_json = out.take();
-    return outcome;
+    return with_result("range", partial, outline_of(answer.range, answer.units), out.take());
 }
 
 Answer range_call(std::string_view body, const RunControl& control) {

@@ -67,7 +67,7 @@ ROOMS = {
         "shorthand": {"contract", "csv", "json"},
         "registries": {"outcome", "contract", "describe", "formula"},
         "services": {"outcome", "code", "contract", "describe", "json"},
-        "check_service": {"outcome", "contract", "historian", "csv", "describe", "json"},
+        "check_service": {"outcome", "services", "contract", "historian", "csv", "describe", "json"},
         "service": {"outcome", "outline", "services", "check_service", "shorthand", "contract", "describe", "json"},
         "batch": {"service", "contract", "historian", "csv", "describe", "json"},
     },

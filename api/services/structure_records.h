@@ -13,6 +13,9 @@ namespace tunewright::api {
 /// A model of each record, with the findings of reading it. Errors: those of identify(), at the record.
 Expected<std::vector<NamedModel>> models_of(const StructureRequest& request, const RunControl& control);
 
+/// With the place of the record, where the error is about a plant that is from a record.
+Error at_source(Error error, const StructureRequest& request);
+
 /// Puts the models where the request needs plants. Errors: not_identifiable for a further input that moves nothing.
 std::optional<Error> take_models(const std::vector<NamedModel>& models, CascadeRequest& request);
 std::optional<Error> take_models(const std::vector<NamedModel>& models, FeedforwardRequest& request);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/describe/body.h"
+#include "api/services/job_outcome.h"
 #include "api/services/structure_records.h"
 #include "api/services/structure_sampled.h"
 #include "engine/structure/drawing/drawing.h"
@@ -42,7 +43,7 @@ Expected<CascadeResult> cascade_of(const CascadeRequest& request, const RunContr
     if (!request.outer.controller) return design_cascade(request.plants(), request.design(), control);
     if (request.inner.controller) return given_cascade(request, {*request.inner.controller, *request.outer.controller});
     auto inner = robust_settings(*request.inner.plant, request.inner.tune, control);
-    if (!inner) return Error{inner.error().kind, "inner", inner.error().message};
+    if (!inner) return Error{inner.error().kind, "inner/" + inner.error().where, inner.error().message};
     return given_cascade(request, {*inner, *request.outer.controller});
 }
 
@@ -91,13 +92,19 @@ Expected<LevelAnswer> answered(const LevelRequest& request, const RunControl&) {
     return out;
 }
 
+/// An error of the loop's design, in the member that has it; the plant is next to that member.
+Error below_unless_plant(const char* member, Error error) {
+    if (!error.where.starts_with("plant")) error.where = member + ("/" + error.where);
+    return error;
+}
+
 Expected<FeedforwardAnswer> answered(const FeedforwardRequest& request, const RunControl& control) {
     FeedforwardAnswer out;
     if (request.feedback.controller) {
         out.feedback = *request.feedback.controller;
     } else {
         const auto settings = robust_settings(*request.plant, *request.feedback.tune, control);
-        if (!settings) return Error{settings.error().kind, "feedback", settings.error().message};
+        if (!settings) return below_unless_plant("feedback", settings.error());
         out.feedback = *settings;
     }
     const structure::FeedforwardProblem problem{.plant = *request.plant,
@@ -113,7 +120,9 @@ Expected<FeedforwardAnswer> answered(const FeedforwardRequest& request, const Ru
     out.partial = out.result.partial;
     out.chosen = request.controller ? structure::FeedforwardKind::given : problem.wanted;
     out.verdict = conclusions_on(out.result, problem);
-    out.drawing = draw(problem, out.result, request.points);
+    out.drawing =
+        draw(problem, out.result,
+             request.feedback.tune ? std::optional<double>(request.feedback.tune->Ms) : std::nullopt, request.points);
     add_settings(request, "feedback", 0, out.feedback, out);
     return out;
 }
@@ -157,11 +166,13 @@ std::vector<IdealPid> known(const std::vector<std::optional<IdealPid>>& given) {
     return out;
 }
 
-double cost_of(const structure::InteractionFigures& figures, const InteractionRequest& request) {
+/// Without a value of its own where the loops are not stable.
+Figure cost_of(const structure::InteractionFigures& figures, const InteractionRequest& request) {
+    if (!figures.stable) return {};
     double sum = 0;
     for (const auto& row : figures.IAE_load)
         for (std::size_t i = 0; i < row.size(); ++i) sum += request.weight(i) * row[i];
-    return sum;
+    return finite_or(sum, structure::kRestsElsewhere);
 }
 
 /// The place of the requested pairing. Without one given controllers act on the input of their own number, and a design
@@ -178,7 +189,8 @@ std::size_t chosen_pairing(const structure::GainAnalysis& gains, const Interacti
 /// The figures of controllers for comparison, or the reason why there are none.
 Expected<ComparedControllers> compared(const char* name, std::vector<IdealPid> controllers, std::string why,
                                        const structure::PlantMatrix& plants, const InteractionRequest& request) {
-    ComparedControllers out{.name = name, .controllers = std::move(controllers), .figures = {}, .why = std::move(why)};
+    ComparedControllers out{
+        .name = name, .controllers = std::move(controllers), .figures = {}, .cost = {}, .why = std::move(why)};
     if (out.controllers.empty()) return out;
     auto figures = structure::judge_interaction(plants, out.controllers);
     if (!figures) return Error{figures.error().kind, name, figures.error().message};
@@ -227,7 +239,7 @@ Expected<InteractionAnswer> answered(const InteractionRequest& request, const Ru
                                        : "",
                      plants, request);
         if (!one) return one.error();
-        if (is_blt && one->figures.stable) blt_cost = one->cost;
+        if (is_blt) blt_cost = one->cost.value_or(blt_cost);
         out.compared.push_back(std::move(*one));
     }
     if (request.baseline) {
@@ -235,7 +247,8 @@ Expected<InteractionAnswer> answered(const InteractionRequest& request, const Ru
         if (!today) return today.error();
         out.compared.push_back(std::move(*today));
     }
-    out.verdict = conclusions_on(out.figures, out.gains, out.chosen, request.limit.mu, out.cost, blt_cost);
+    out.verdict = conclusions_on(out.figures, out.gains, out.chosen, request.limit.mu,
+                                 out.cost.value_or(std::numeric_limits<double>::infinity()), blt_cost);
     structure::NamedControllers all{{"design", out.controllers}};
     for (const ComparedControllers& other : out.compared)
         if (!other.controllers.empty()) all.emplace_back(other.name, other.controllers);
@@ -254,12 +267,15 @@ std::variant<Result, Problem> whole_answer(const Request& given, const Descripti
     Request request = given;
     if (auto error = take_models(*models, request)) return to_problem(*error);
     auto result = answered(request, control);
-    if (!result) return to_problem(result.error());
+    if (!result) return to_problem(at_source(result.error(), given));
     result->models = std::move(*models);
     result->units = request.units;
     if (!request.sampled || result->partial) return std::move(*result);
+    // The program needs the settings alone.
+    structure::StructureDrawing drawing = std::exchange(result->drawing, {});
     Writer text;
     contract.write(*result, text);
+    result->drawing = std::move(drawing);
     auto view = run_program(request, Json::parse(text.view()), sampled_plants(request, *result), control);
     if (auto* problem = std::get_if<Problem>(&view)) return std::move(*problem);
     result->sampled = std::move(std::get<SampledView>(view));
@@ -304,22 +320,14 @@ Answer call(std::string_view body, const Description<Request>& contract, const D
 template <class Request, class Result>
 JobOutcome outcome(const Request& request, const char* structure, const Description<Result>& result_contract,
                    std::string_view hash, const RunControl& control) {
-    JobOutcome outcome;
-    outcome.method = structure;
     auto made = whole_answer(request, result_contract, control);
-    if (const auto* problem = std::get_if<Problem>(&made)) {
-        outcome.status = control.stop.stop_requested() ? JobOutcome::Status::cancelled : JobOutcome::Status::failed;
-        if (outcome.status == JobOutcome::Status::failed) outcome.error_json = to_json(*problem);
-        return outcome;
-    }
+    if (const auto* problem = std::get_if<Problem>(&made))
+        return without_result(structure, *problem, control.stop.stop_requested());
     auto& result = std::get<Result>(made);
-    outcome.status = result.partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
     result.request_hash = hash;
-    outcome.outline_json = outline_of(request, structure, result);
     Writer out;
     result_contract.write(result, out);
-    outcome.result_json = out.take();
-    return outcome;
+    return with_result(structure, result.partial, outline_of(request, structure, result), out.take());
 }
 
 }  // namespace

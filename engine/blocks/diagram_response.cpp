@@ -24,11 +24,12 @@ constexpr double kOfRate = 0.1;        // first step times the fastest rate
 constexpr int kEchoes = 4, kEchoesOfMany = 3, kEchoesAtLowAccuracy = 2;
 constexpr std::size_t kMany = 4;  // delayed signals
 constexpr double kLowAccuracy = 1e-5;
-constexpr double kNearZero = 4e-5;   // frequency, of 1/time_scale, from which the values at 0 are extrapolated
-constexpr double kNoError = 1e-9;    // of the step: the error's final value
-constexpr int kIterations = 12;      // of a step that is longer than a dead time
-constexpr double kConverged = 1e-4;  // of the tolerance: change of the largest value in an iteration
-constexpr double kOneLevel = 16;     // by which half the step lowers the error
+constexpr double kNearZero = 4e-5;       // frequency, of 1/time_scale, from which the values at 0 are extrapolated
+constexpr double kNoError = 1e-9;        // of the step: the error's final value
+constexpr double kNoErrorOfPeak = 1e-7;  // the same, of the largest value of y
+constexpr int kIterations = 12;          // of a step that is longer than a dead time
+constexpr double kConverged = 1e-4;      // of the tolerance: change of the largest value in an iteration
+constexpr double kOneLevel = 16;         // by which half the step lowers the error
 constexpr double kUnbounded = 1e6;
 constexpr int kLookAtRounding = 16;  // steps between two looks at the parts of signals
 constexpr double kRounding = 1e-8;   // of those parts: a signal that is smaller counts as that large
@@ -332,7 +333,9 @@ StepResponse DiagramResponse::pair(int y, int u, double r) const {
     if (!final_.empty()) {
         out.y_final = final_[std::size_t(y)];
         out.u_final = final_[std::size_t(u)] - inputs_[std::size_t(u)];
-        if (std::abs(r - out.y_final) <= kNoError * std::max(1.0, std::abs(r)))
+        double largest = 0;
+        for (std::size_t i = 0; i < t_.size(); ++i) largest = std::max(largest, std::abs(at(i, y).value));
+        if (std::abs(r - out.y_final) <= std::max(kNoError * std::max(1.0, std::abs(r)), kNoErrorOfPeak * largest))
             out.error_integral_final = -slope_[std::size_t(y)];
     }
     out.nodes.reserve(t_.size());

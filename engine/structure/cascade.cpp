@@ -23,7 +23,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kValveOverLoops = 1.15;       // the default limit on Ms_valve
 constexpr int kPerDecade = 40;                 // frequencies of a search
 constexpr double kBelow = 1e-2, kAbove = 1e2;  // of the corners of both plants
 constexpr double kTurn = 1;                    // rad of a dead time between frequencies of a search
@@ -292,7 +291,9 @@ std::optional<Error> add_responses(const CascadeDiagram& all, LoadFigures& inner
 
 }  // namespace
 
-double default_valve_limit(double Ms_inner, double Ms_outer) { return kValveOverLoops * std::max(Ms_inner, Ms_outer); }
+double default_valve_limit(double Ms_inner, double Ms_outer) {
+    return kDefaultValveOverLoops * std::max(Ms_inner, Ms_outer);
+}
 
 double CascadeDesign::valve_limit() const { return Ms_valve.value_or(default_valve_limit(inner.Ms, outer.Ms)); }
 
@@ -302,6 +303,7 @@ Expected<CascadeFigures> judge_cascade(const CascadePlants& plants, const Cascad
     const auto inner = cascade_diagram(plants, controllers.inner, nullptr);
     CascadeFigures out;
     out.stable = count_unstable_poles(all->diagram).stable() && count_unstable_poles(inner->diagram).stable();
+    out.speed_ratio = no_figure("The loops are not stable.");
     if (!out.stable) return out;
     const DiagramLoop own(inner->diagram, inner->valve), outer(all->diagram, all->r2);
     const LoopGrid own_grid = make_peak_grid(own), grid = make_peak_grid(outer);

@@ -34,7 +34,8 @@ struct CascadeControllers {
 
 /// Figures of y1 after a unit step; TV of the valve.
 struct LoadFigures {
-    double IAE = 0, IE = 0, peak = 0, TV = 0;
+    Figure IAE = 0.0, IE = 0.0;
+    double peak = 0, TV = 0;
 };
 struct CascadeFigures {
     bool stable = false;
@@ -47,7 +48,8 @@ struct CascadeFigures {
 /// Figures of a pair of controllers. Errors: those of cascade_diagram(); unstable loops are no error.
 Expected<CascadeFigures> judge_cascade(const CascadePlants& plants, const CascadeControllers& controllers);
 
-/// The limit on Ms_valve if none is given: 1.15 times the larger of the two Ms.
+/// The limit on Ms_valve if none is given, over the larger of the two Ms.
+inline constexpr double kDefaultValveOverLoops = 1.15;
 double default_valve_limit(double Ms_inner, double Ms_outer);
 
 struct CascadeDesign {

@@ -1,8 +1,10 @@
 #include "engine/structure/cascade_diagram.h"
-#include "engine/structure/drawing/view.h"
 
 #include <memory>
 #include <utility>
+
+#include "engine/blocks/diagram_stability.h"
+#include "engine/structure/drawing/view.h"
 
 namespace tunewright::structure {
 namespace {
@@ -67,6 +69,8 @@ Expected<StructureView> cascade_view(const std::string& of, const CascadePlants&
     const auto all = cascade_diagram(plants, controllers.inner, &controllers.outer);
     if (!all) return all.error();
     auto inner = cascade_diagram(plants, controllers.inner, nullptr);
+    if (!count_unstable_poles(inner->diagram).stable())
+        return Error{ErrorKind::unsupported, "", "The inner loop by itself is not stable."};
     StructureView out = view_of(of, *all);
     std::optional<double> Ms_inner, Ms_outer, Ms_valve;
     if (limits != nullptr) {

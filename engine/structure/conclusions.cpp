@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace tunewright::structure {
 namespace {
@@ -15,7 +16,6 @@ constexpr double kNearLowestRate = 1.1;     // largest rate of the outflow over 
 constexpr double kAsWell = 1.02;            // IAE of the PID over that of the predictor
 constexpr double kMinWindow = 0.25;         // of the dead time: how well it is known at best in a plant
 constexpr double kHardlyInteracting = 0.1;  // |relative gain - 1|, at steady state and near the crossovers
-constexpr double kExact = 1e-6;             // of the IAE without feedforward
 constexpr double kMuchBetterPairing = 0.5;  // distance of the better pairing over that of the chosen one
 
 struct CodeName {
@@ -60,6 +60,23 @@ void add_peak(Conclusions& out, ConclusionCode code, double peak, double limit) 
     if (above(peak, limit)) out.push_back({code, {{"Ms", peak}, {"limit", limit}}});
 }
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double or_infinite(const Figure& IAE) { return IAE.value_or(kInfinity); }
+
+/// without/with; empty where both are infinite.
+std::optional<double> gain_of(double without, double with) {
+    if (std::isinf(without) && std::isinf(with)) return std::nullopt;
+    return without / with;
+}
+
+/// What a cascade is for: the IAE after inner loads, or the cost of a joint design.
+double weighed(const LoadFigures& inner, const LoadFigures& outer, const CascadeDesign& design) {
+    if (!design.joint) return or_infinite(inner.IAE);
+    return (design.weight_inner > 0 ? design.weight_inner * or_infinite(inner.IAE) : 0) +
+           (design.weight_outer > 0 ? design.weight_outer * or_infinite(outer.IAE) : 0);
+}
+
 }  // namespace
 
 std::string to_string(ConclusionCode code) { return std::ranges::find(kNames, code, &CodeName::code)->name; }
@@ -77,9 +94,13 @@ Conclusions conclusions_on(const CascadeFigures& figures, const CascadeDesign& l
     if (!figures.stable) return {{unstable, {}}};
     Conclusions out;
     if (single != nullptr && single->stable) {
-        const double inner = single->inner_load.IAE / figures.inner_load.IAE;
-        out.push_back({inner >= kWorthwhile ? cascade_pays : cascade_gains_little,
-                       {{"gain_inner", inner}, {"gain_outer", single->outer_load.IAE / figures.outer_load.IAE}}});
+        const std::optional<double> gain = gain_of(weighed(single->inner_load, single->outer_load, limits),
+                                                   weighed(figures.inner_load, figures.outer_load, limits));
+        if (gain)
+            out.push_back({*gain >= kWorthwhile ? cascade_pays : cascade_gains_little,
+                           {{"gain_inner", ratio(single->inner_load.IAE, figures.inner_load.IAE)},
+                            {"gain_outer", ratio(single->outer_load.IAE, figures.outer_load.IAE)},
+                            {"gain_setpoint", ratio(single->setpoint.IAE, figures.setpoint.IAE)}}});
     }
     if (figures.speed_ratio && *figures.speed_ratio < kMinSpeedRatio)
         out.push_back({inner_too_slow, {{"speed_ratio", *figures.speed_ratio}, {"at_least", kMinSpeedRatio}}});
@@ -111,24 +132,26 @@ Conclusions conclusions_on(const FeedforwardResult& result, const FeedforwardPro
                                                                                                        : nullptr;
     };
     const FeedforwardVariant& none = *of(FeedforwardKind::none);
-    const double IAE_none = none.figures.IAE;
+    const Figure& IAE_none = none.figures.IAE;
     const FeedforwardVariant* best = of(FeedforwardKind::given);
     if (best == nullptr) best = of(problem.wanted);
     if (best != nullptr) {
-        const double gain = IAE_none / best->figures.IAE;
-        if (best->figures.IAE <= kExact * IAE_none)
+        const std::optional<double> gain = gain_of(or_infinite(IAE_none), or_infinite(best->figures.IAE));
+        if (is_exact(best->figures, none.figures))
             out.push_back({feedforward_exact, {}});
-        else
-            out.push_back({gain >= kWorthwhile ? feedforward_pays
-                           : gain >= 1         ? feedforward_gains_little
-                                               : feedforward_worse_than_none,
-                           {{"gain", gain}}});
-        const double worst = std::ranges::max(best->IAE_if_wrong);
-        if (worst > IAE_none && gain >= 1)
+        else if (gain)
+            out.push_back({*gain >= kWorthwhile ? feedforward_pays
+                           : *gain >= 1         ? feedforward_gains_little
+                                                : feedforward_worse_than_none,
+                           {{"gain", ratio(IAE_none, best->figures.IAE)}}});
+        double worst = 0;
+        for (const Figure& IAE : best->IAE_if_wrong) worst = std::max(worst, IAE.value_or(0));
+        if (IAE_none && worst > *IAE_none && gain >= 1)
             out.push_back(
                 {wrong_model_worse_than_none, {{"IAE", worst}, {"IAE_none", IAE_none}, {"wrong", problem.wrong}}});
     }
-    if (const auto* alone = of(FeedforwardKind::gain); alone != nullptr && alone->figures.IAE > IAE_none)
+    if (const auto* alone = of(FeedforwardKind::gain);
+        alone != nullptr && or_infinite(alone->figures.IAE) > or_infinite(IAE_none))
         out.push_back({gain_alone_worse_than_none, {{"IAE", alone->figures.IAE}, {"IAE_none", IAE_none}}});
     if (result.peak_bound > 0)
         out.push_back({peak_unavoidable, {{"peak_bound", result.peak_bound}, {"peak", std::abs(none.figures.peak)}}});
@@ -139,14 +162,13 @@ Conclusions conclusions_on(const PredictorFigures& figures, const Figure& pid_IA
                            double L) {
     if (!figures.stable) return {{unstable, {}}};
     Conclusions out;
-    if (pid_IAE && figures.load) {
-        const double IAE = figures.load->IAE;
+    if (pid_IAE && figures.load && figures.load->IAE) {
+        const double IAE = *figures.load->IAE;
         out.push_back(
             {*pid_IAE <= kAsWell * IAE ? pid_does_as_well : predictor_pays, {{"IAE_pid", *pid_IAE}, {"IAE", IAE}}});
     }
     if (limited_by_dead_time) out.push_back({limited_by_dead_time_error, {{"Ms", figures.Ms}}});
-    const double window = std::min(figures.dead_time_up.value_or(std::numeric_limits<double>::infinity()),
-                                   figures.dead_time_down.value_or(std::numeric_limits<double>::infinity()));
+    const double window = std::min(or_infinite(figures.dead_time_up), or_infinite(figures.dead_time_down));
     if (window < kMinWindow * L)
         out.push_back({narrow_dead_time_window, {{"window", window}, {"at_least", kMinWindow * L}}});
     if (figures.controller_unstable_poles > 0)
@@ -159,20 +181,18 @@ Conclusions conclusions_on(const InteractionFigures& figures, const GainAnalysis
     Conclusions out;
     const Pairing& pairing = gains.pairings[chosen];
     const double lowest = std::ranges::min(pairing.relative);
-    if (!pairing.possible) {
-        out.push_back({pairing_impossible, {{"relative_gain", lowest}}});
-        if (pairing.niederlinski) out.back().figures["niederlinski"] = *pairing.niederlinski;
-    }
+    if (!pairing.possible)
+        out.push_back({pairing_impossible, {{"relative_gain", lowest}, {"niederlinski", pairing.niederlinski}}});
     const Pairing& best = gains.pairings.front();
     if (chosen > 0 && best.possible && (!pairing.possible || best.distance < kMuchBetterPairing * pairing.distance))
         out.push_back({other_pairing_better, {{"relative_gain", lowest}, {"other", std::ranges::min(best.relative)}}});
-    const auto near_one = [](double gain) { return std::abs(gain - 1) <= kHardlyInteracting; };
-    if (std::ranges::all_of(pairing.relative, near_one) && std::ranges::all_of(pairing.at_crossover, near_one))
-        out.push_back({hardly_interacting, {{"relative_gain", lowest}}});
     if (!figures.stable) {
         out.push_back({unstable, {}});
         return out;
     }
+    const auto near_one = [](double gain) { return std::abs(gain - 1) <= kHardlyInteracting; };
+    if (std::ranges::all_of(pairing.relative, near_one) && std::ranges::all_of(pairing.at_crossover, near_one))
+        out.push_back({hardly_interacting, {{"relative_gain", lowest}}});
     if (above(figures.mu, mu)) out.push_back({mu_above, {{"mu", figures.mu}, {"limit", mu}}});
     if (!figures.unstable_subsets.empty())
         out.push_back({subsets_unstable, {{"count", double(figures.unstable_subsets.size())}}});

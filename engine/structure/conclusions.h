@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/figure.h"
 #include "engine/structure/cascade.h"
 #include "engine/structure/feedforward.h"
 #include "engine/structure/interaction.h"
@@ -17,7 +18,7 @@ namespace tunewright::structure {
 enum class ConclusionCode {
     unstable,  ///< the loops are not stable together
 
-    cascade_pays,  ///< IAE after inner loads: `gain_inner` times less than with one loop
+    cascade_pays,  ///< IAE: `gain_inner`, `gain_outer`, `gain_setpoint` times less than with one loop
     cascade_gains_little,
     inner_too_slow,    ///< `speed_ratio` is below `at_least`
     inner_peak_above,  ///< `Ms` exceeds `limit`
@@ -57,15 +58,16 @@ const std::vector<ConclusionCode>& all_conclusion_codes();
 
 struct Conclusion {
     ConclusionCode code{};
-    std::map<std::string, double> figures;
+    std::map<std::string, Figure> figures;
 };
 using Conclusions = std::vector<Conclusion>;
 
 /// `single` null: not compared.
+/// A cascade pays by the IAE after inner loads, in a joint design by the weighted sum over both loads.
 Conclusions conclusions_on(const CascadeFigures& figures, const CascadeDesign& limits, const SingleLoop* single);
 Conclusions conclusions_on(const LevelResult& result, const LevelProblem& problem);
 Conclusions conclusions_on(const FeedforwardResult& result, const FeedforwardProblem& problem);
-/// `pid_IAE`: of the robust PID under the same limit.
+/// `pid_IAE`: of the robust PID of the same Ms.
 Conclusions conclusions_on(const PredictorFigures& figures, const Figure& pid_IAE, bool limited_by_dead_time, double L);
 /// `mu`: the limit; `chosen`: of the analysis' pairings; the costs are weighted sums of IAE after loads, `blt_cost`
 /// infinite if it is not known.

@@ -23,6 +23,7 @@ constexpr double kFirstSteps[] = {0.1, 0.3, 0.5};  // of ln(Kf), ln(Tz), ln(Tp)
 constexpr int kMostEvaluations = 160;              // of each of the searches
 constexpr double kShortLag = 0.05;                 // of the lead: a start whose first move is large
 constexpr double kSameMove = 1 + 1e-9;             // of the bound: rounding
+constexpr double kExact = 1e-6;                    // of the IAE or the peak without feedforward
 constexpr double kNearZero = 1e-5;                 // of 1/time: where transforms are taken for 0
 
 struct Diagram {
@@ -61,18 +62,20 @@ double IAE_of(const FeedforwardProblem& problem, const Feedforward& f) {
     return diagram ? quick_IAE(diagram->blocks, diagram->d, diagram->y, 0) : kInfinity;
 }
 
-std::vector<double> IAE_if_wrong(const FeedforwardProblem& problem, const Feedforward& f) {
-    std::vector<double> out;
+std::vector<Figure> IAE_if_wrong(const FeedforwardProblem& problem, const Feedforward& f) {
+    std::vector<Figure> out;
     for (const double factor : {1 - problem.wrong, 1 + problem.wrong}) {
         FeedforwardProblem other = problem;
         other.disturbance = changed(problem.disturbance, factor, 1);
-        out.push_back(IAE_of(other, f));
+        out.push_back(finite_or(IAE_of(other, f), kRestsElsewhere));
     }
     for (const double factor : {1 - problem.wrong, 1 + problem.wrong}) {
         FeedforwardProblem other = problem;
         other.plant = changed(problem.plant, 1, factor);
         const auto loop = diagram_of(other.plant, other.disturbance, other.feedback, {});
-        out.push_back(loop && count_unstable_poles(loop->blocks).stable() ? IAE_of(other, f) : kInfinity);
+        out.push_back(loop && count_unstable_poles(loop->blocks).stable()
+                          ? finite_or(IAE_of(other, f), kRestsElsewhere)
+                          : no_figure("With this dead time the loop is not stable."));
     }
     return out;
 }
@@ -119,12 +122,13 @@ Feedforward rule_of(const FeedforwardProblem& problem, double late) {
     return f;
 }
 
-/// The least IAE over gain, lead and lag. A lag that would move u too far at first is lengthened to the bound.
+/// The least IAE over gain, lead and lag. A lag that would move u too far at first is lengthened to the bound. Without
+/// integral action in the feedback only the static gain brings y to rest at its target.
 Feedforward optimum_of(const FeedforwardProblem& problem, const Feedforward& rule, const RunControl& control,
                        bool& stopped) {
     const Feedforward inverse = inverse_of(problem);
     const auto at = [&](const std::vector<double>& x) {
-        Feedforward f{.Kf = std::copysign(std::exp(x[0]), inverse.Kf),
+        Feedforward f{.Kf = problem.feedback.has_integral() ? std::copysign(std::exp(x[0]), inverse.Kf) : inverse.Kf,
                       .Tz = std::exp(x[1]),
                       .Tp = std::exp(x[2]),
                       .Lf = inverse.Lf};
@@ -143,13 +147,13 @@ Feedforward optimum_of(const FeedforwardProblem& problem, const Feedforward& rul
     brief.Tp = kShortLag * brief.Tz;
     Feedforward best = inverse;
     double least = kInfinity;
-    const double none = IAE_of(problem, {});
+    const double none = IAE_of(problem, {}), floor = std::isfinite(none) ? 1e-12 * none : 0;
     for (const Feedforward& start : {rule, inverse, quick, brief}) {
         const auto found = find_local_minimum(LocalSearch::nelder_mead,
                                               [&](const std::vector<double>& x, bool& stop) {
                                                   stop = stopped = control.stop.stop_requested();
                                                   const double IAE = IAE_of(problem, at(x));
-                                                  return std::isfinite(IAE) ? std::log(IAE + 1e-12 * none) : 100.0;
+                                                  return std::isfinite(IAE) ? std::log(IAE + floor) : 100.0;
                                               },
                                               start_of(start),
                                               {.step = {kFirstSteps[0], kFirstSteps[1], kFirstSteps[2]},
@@ -185,11 +189,18 @@ std::optional<Error> refused(const FeedforwardProblem& problem) {
 FeedforwardVariant unbuilt(FeedforwardKind kind, std::string why) {
     FeedforwardVariant out;
     out.kind = kind;
+    out.figures.settles = false;
+    out.figures.IAE = out.figures.ISE = out.figures.IE = no_figure(why);
     out.why_not = std::move(why);
     return out;
 }
 
 }  // namespace
+
+bool is_exact(const StepFigures& with, const StepFigures& without) {
+    if (!with.IAE) return false;
+    return without.IAE ? *with.IAE <= kExact * *without.IAE : std::abs(with.peak) <= kExact * std::abs(without.peak);
+}
 
 const char* name_of(FeedforwardKind kind) {
     constexpr const char* kNames[] = {"none", "static", "inverse", "guzman_hagglund", "optimum", "given"};
@@ -246,13 +257,14 @@ Expected<FeedforwardResult> design_feedforward(const FeedforwardProblem& problem
     const bool proper = inverse.Tp > 0 || !(inverse.Tz > 0);
     const bool exact =
         out.late <= 0 && proper && std::abs(inverse.jump()) <= problem.jump &&
-        out.variants[std::size_t(FeedforwardKind::inverse)].figures.IAE < 1e-6 * out.variants.front().figures.IAE;
+        is_exact(out.variants[std::size_t(FeedforwardKind::inverse)].figures, out.variants.front().figures);
     if (auto error = add(FeedforwardKind::optimum, exact ? inverse : optimum_of(problem, rule, control, out.partial)))
         return *error;
     return out;
 }
 
-Expected<StructureView> feedforward_view(const FeedforwardProblem& problem, const FeedforwardVariant& variant) {
+Expected<StructureView> feedforward_view(const FeedforwardProblem& problem, const FeedforwardVariant& variant,
+                                         std::optional<double> limit) {
     auto diagram = diagram_of(problem.plant, problem.disturbance, problem.feedback, variant.compensator);
     if (!diagram) return diagram.error();
     const auto blocks = std::make_shared<const BlockDiagram>(diagram->blocks);
@@ -260,7 +272,7 @@ Expected<StructureView> feedforward_view(const FeedforwardProblem& problem, cons
                          .diagram = std::move(diagram->blocks),
                          .inputs = {{"disturbance", diagram->d}},
                          .outputs = {{"y", diagram->y}, {"u", diagram->u}},
-                         .curves = {sensitivity_at("loop", blocks, diagram->u, {})}};
+                         .curves = {sensitivity_at("loop", blocks, diagram->u, limit)}};
 }
 
 }  // namespace tunewright::structure

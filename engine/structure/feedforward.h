@@ -15,6 +15,7 @@
 
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
+#include "engine/figure.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/progress.h"
 #include "engine/structure/step_figures.h"
@@ -42,13 +43,15 @@ enum class FeedforwardKind {
 /// "static" for gain, "guzman_hagglund" for rule.
 const char* name_of(FeedforwardKind kind);
 
+inline constexpr double kDefaultJump = 10, kDefaultWrong = 0.2;
+
 struct FeedforwardProblem {
     LinearPlant plant, disturbance;
     IdealPid feedback;
-    double jump = 10;                                   ///< largest |first move of u| after a unit step of d; > 0
+    double jump = kDefaultJump;                         ///< largest |first move of u| after a unit step of d; > 0
     std::optional<Feedforward> given = {};              ///< judged, in place of the designs
     FeedforwardKind wanted = FeedforwardKind::optimum;  ///< of the designs: the one that conclusions are about
-    double wrong = 0.2;                                 ///< share by which gains and dead times are taken to be wrong
+    double wrong = kDefaultWrong;                       ///< share by which gains and dead times are taken to be wrong
 };
 
 struct FeedforwardVariant {
@@ -58,8 +61,11 @@ struct FeedforwardVariant {
     StepFigures figures;                     ///< after a unit step of d
     double u_start = 0;                      ///< first move of u
     /// IAE if one of them is wrong: disturbance's gain low, high; plant's dead time short, long.
-    std::vector<double> IAE_if_wrong;
+    std::vector<Figure> IAE_if_wrong;
 };
+
+/// The disturbance does not move y, to the accuracy of a simulation: figures with a compensator and without one.
+bool is_exact(const StepFigures& with, const StepFigures& without);
 
 struct FeedforwardResult {
     std::vector<FeedforwardVariant> variants;  ///< in the order of FeedforwardKind; with a given one that and none

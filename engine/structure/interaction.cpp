@@ -14,6 +14,7 @@
 #include "engine/blocks/diagram_loop.h"
 #include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
+#include "engine/number_text.h"
 #include "engine/numerics/optimise/line_search.h"
 #include "engine/structure/drawing/view.h"
 #include "engine/structure/interaction_gains.h"
@@ -398,6 +399,24 @@ std::optional<Error> without_diagonal(const PlantMatrix& plants) {
     return std::nullopt;
 }
 
+/// Integral action needs a positive index and positive relative gains (interaction_gains.h), unless a plant is
+/// unstable.
+std::optional<Error> impossible_pairing(const PlantMatrix& plants, const GainAnalysis& gains) {
+    for (const auto& row : plants)
+        for (const auto& plant : row)
+            if (plant && plant->unstable_poles() > 0) return std::nullopt;
+    const auto own =
+        std::ranges::find_if(gains.pairings, [](const Pairing& one) { return std::ranges::is_sorted(one.input_of); });
+    if (own->possible) return std::nullopt;
+    const std::string why = own->niederlinski && *own->niederlinski < 0
+                                ? "its Niederlinski index is " + text(*own->niederlinski, 3)
+                                : "its lowest relative gain is " + text(std::ranges::min(own->relative), 3);
+    return Error{ErrorKind::no_feasible_controller, "pairing",
+                 "With this pairing no controllers with integral action are stable both together and with one loop in "
+                 "manual: " +
+                     why + (gains.pairings.front().possible ? ". Choose another pairing." : ". No pairing is better.")};
+}
+
 }  // namespace
 
 Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const std::vector<IdealPid>& controllers) {
@@ -437,8 +456,8 @@ Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const 
         if (!load) return load.error();
         if (!moved) return moved.error();
         for (std::size_t i = 0; i < plants.size(); ++i) {
-            out.IAE_load[j][i] = (*load)[i].IAE;
-            out.IAE_setpoint[j][i] = (*moved)[i].IAE;
+            out.IAE_load[j][i] = (*load)[i].IAE.value_or(kInfinity);
+            out.IAE_setpoint[j][i] = (*moved)[i].IAE.value_or(kInfinity);
         }
     }
     const Grids grids(plants);
@@ -483,6 +502,7 @@ Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const 
     const auto gains = analyse_gains(plants);
     if (!gains) return gains.error();
     if (auto error = without_diagonal(plants)) return *error;
+    if (auto error = impossible_pairing(plants, *gains)) return *error;
     const auto luyben = blt(plants);
     InteractionResult out;
     out.blt = luyben ? OrReason<BltSettings>(*luyben) : OrReason<BltSettings>({}, luyben.error().message);

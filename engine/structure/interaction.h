@@ -28,7 +28,7 @@ struct InteractionFigures {
     std::vector<double> Ms_others_closed;  ///< max |S_ii|
     double mu = 0, omega_mu = 0;
     double log_modulus = 0;        ///< dB: 20 log10 max |W/(1 + W)|, W = det(I + P C) - 1 (Luyben 1986)
-    Table IAE_setpoint, IAE_load;  ///< [j][i]: of y_i after a unit step of set point or load j
+    Table IAE_setpoint, IAE_load;  ///< [j][i]: of y_i after a unit step of set point or load j; or infinite
     std::vector<std::vector<int>> unstable_subsets;  ///< loops in automatic that are not stable together
     std::vector<bool> may_open;                      ///< loop i may be put in manual while the others stay in automatic
 };
@@ -37,9 +37,11 @@ struct InteractionFigures {
 /// with a path that is not there.
 Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const std::vector<IdealPid>& controllers);
 
+inline constexpr double kDefaultMu = 1.8;
+
 struct InteractionDesign {
     bool derivative = false;          ///< PID with Tf = Td/10 in place of PI
-    double mu = 1.8;                  ///< limit, > 1
+    double mu = kDefaultMu;           ///< limit, > 1
     std::vector<double> weight = {};  ///< of each output's IAE; empty: 1
 };
 
@@ -61,8 +63,8 @@ struct InteractionResult {
 };
 
 /// The least weighted sum of the IAE of all outputs after unit loads at all inputs, within the limit on mu, with every
-/// subset of the loops stable. Errors: those of judge_interaction(); no_feasible_controller; those of the methods for
-/// the single loops.
+/// subset of the loops stable. Errors: those of judge_interaction(); no_feasible_controller, at "pairing" where no
+/// controllers with integral action can be stable; those of the methods for the single loops.
 Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const InteractionDesign& design,
                                                const RunControl& control);
 

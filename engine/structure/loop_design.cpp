@@ -10,11 +10,32 @@
 
 namespace tunewright::structure {
 
+namespace {
+
+/// An error of the method robust, where the design of a loop has its place.
+Error of_loop(Error error) {
+    if (error.kind == ErrorKind::unbounded_optimum) {
+        error.message =
+            "This plant has no dead time, so the gain is unbounded within the limits. Give the plant its dead time, "
+            "or a lag of the measurement, such as the sampling time.";
+        error.where = "plant";
+    } else if (error.where == "Ms" || error.where == "Mt" || error.where == "controller") {
+        error.where = "tune/" + error.where;
+    } else if (error.kind == ErrorKind::no_feasible_controller) {
+        error.where = "tune";
+    } else if (error.kind != ErrorKind::cancelled && !error.where.starts_with("plant")) {
+        error.where = "plant";
+    }
+    return error;
+}
+
+}  // namespace
+
 Expected<IdealPid> robust_settings(const LinearPlant& plant, const LoopDesign& design, const RunControl& control) {
     const TuningProblem problem{.plant = Plant(factors_of(plant)), .linear = plant, .dead_time_std = {}};
     auto tuned = tune_robust(problem, {.controller = design.controller, .Ms = design.Ms, .Mt = design.Mt},
                              {control.stop, nullptr, control.now_ms});
-    if (!tuned) return tuned.error();
+    if (!tuned) return of_loop(tuned.error());
     return tuned->controller;
 }
 

@@ -23,7 +23,8 @@ struct LoopDesign {
     double Ms = limits::kDefaultMs, Mt = limits::kDefaultMt;
 };
 
-/// The least IAE of a load step within the limits. Errors: those of the method robust.
+/// The least IAE of a load step within the limits. Errors: those of the method robust, at "plant" or "tune"; none names
+/// an option that a LoopDesign does not have.
 Expected<IdealPid> robust_settings(const LinearPlant& plant, const LoopDesign& design, const RunControl& control);
 
 /// Gain, zeros, poles and dead time of the plant, integrators included.

@@ -28,7 +28,6 @@ constexpr double kOfCrossing = 1e-15, kOfKnob = 1e-9;    // relative: where the 
 constexpr double kSlower = 1.1, kOfKnobForPlant = 1e-6;  // ratio of the knobs tried on a plant that is not the model
 constexpr int kPerDecade = 400;                          // frequencies at which |S| = |T| is looked for
 constexpr double kLow = 1e-3, kHigh = 1e3;               // of 1/L
-constexpr double kMostMs = 1.99;
 constexpr double kBesideZero = 1e-5;  // of 1/time scale: the controller's own integrator is left of it
 
 using OverFrequency = std::function<Complex(double)>;
@@ -162,9 +161,9 @@ std::optional<Error> refused(const PredictorModel& m, const PredictorDesign& des
                      "L is " + text(m.L) + "; a predictor needs a dead time above 0."};
     if (m.K == 0 || !std::isfinite(m.K) || !std::isfinite(m.T) || (!m.integrating && m.T == 0))
         return Error{ErrorKind::invalid_argument, "model", "K and T of the model must be finite numbers other than 0."};
-    if (!(design.Ms > 1 && design.Ms <= kMostMs))
+    if (!(design.Ms > 1 && design.Ms <= kMaxPredictorMs))
         return Error{ErrorKind::invalid_argument, "Ms",
-                     "Ms is " + text(design.Ms) + "; it must be above 1 and at most " + text(kMostMs) +
+                     "Ms is " + text(design.Ms) + "; it must be above 1 and at most " + text(kMaxPredictorMs) +
                          ": no Smith predictor has a peak of 2."};
     if ((m.integrating || m.T < 0) && design.kind != PredictorKind::filtered_smith)
         return Error{ErrorKind::unsupported, "kind",
@@ -222,18 +221,23 @@ Expected<PidLoop> pid_loop(const LinearPlant& plant, const IdealPid& controller)
     return out;
 }
 
-/// The robust PID under the same limit on Ms.
-void compare_with_pid(const LinearPlant& plant, const PredictorDesign& design, const RunControl& control,
-                      PredictorResult& out) {
+/// The robust PID with the Ms that the predictor has, which is below the limit where the window of the dead time bounds
+/// the design.
+void compare_with_pid(const LinearPlant& plant, const RunControl& control, PredictorResult& out) {
+    if (!out.figures.stable) {
+        out.pid_IAE = no_figure("The predictor is not stable, so there is no Ms for a PID to match.");
+        return;
+    }
+    const double Ms = out.figures.Ms;
     const auto settings = robust_settings(
-        plant, {.controller = ControllerKind::PID, .Ms = design.Ms, .Mt = std::max(design.Ms, limits::kDefaultMt)},
-        control);
+        plant, {.controller = ControllerKind::PID, .Ms = Ms, .Mt = std::max(Ms, limits::kDefaultMt)}, control);
     if (!settings) {
         out.pid_IAE = no_figure(settings.error().message);
         return;
     }
     out.pid = *settings;
     const auto loop = pid_loop(plant, *settings);
+    out.pid_IAE = no_figure("The loop with the PID could not be simulated.");
     if (!loop) return;
     if (const auto figures = step_figures(loop->blocks, loop->u, loop->y, loop->u, 0)) out.pid_IAE = figures->IAE;
 }
@@ -266,7 +270,9 @@ Expected<PredictorFigures> judge_predictor(const LinearPlant& plant, const Predi
     PredictorFigures out;
     out.controller_unstable_poles = count_unstable_poles(alone->blocks, kBesideZero).unstable_poles;
     out.stable = count_unstable_poles(diagram->blocks).stable();
-    out.dead_time_up = out.dead_time_down = no_figure("The loop is not stable.");
+    const std::string unstable = "The loop is not stable.";
+    out.dead_time_up = out.dead_time_down = no_figure(unstable);
+    out.load = out.setpoint = OrReason<StepFigures>({}, unstable);
     if (!out.stable) return out;
     const DiagramLoop at_plant(diagram->blocks, diagram->y);
     const Peaks peaks = find_peaks(at_plant, make_peak_grid(at_plant));
@@ -311,7 +317,7 @@ Expected<PredictorResult> design_predictor(const PredictorModel& model, const Li
     out.figures = std::move(*figures);
     if (design.dead_time_error && !fixed)
         out.limited_by_dead_time = out.figures.Ms < design.Ms * (1 - limits::kMaxRelativeExcessShown);
-    compare_with_pid(plant, design, control, out);
+    compare_with_pid(plant, control, out);
     return out;
 }
 

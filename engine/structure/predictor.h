@@ -58,16 +58,19 @@ struct PredictorFigures {
 /// The controller on any plant, the model exact or not. Errors: those of the block diagram.
 Expected<PredictorFigures> judge_predictor(const LinearPlant& plant, const PredictorController& controller);
 
+/// The largest limit on Ms of a design: no Smith predictor has a peak of 2.
+inline constexpr double kMaxPredictorMs = 1.99;
+
 struct PredictorDesign {
     PredictorKind kind = PredictorKind::smith;
-    double Ms = limits::kDefaultMs;              ///< limit, in (1, 2)
+    double Ms = limits::kDefaultMs;              ///< limit, in (1, kMaxPredictorMs]
     std::optional<double> dead_time_error = {};  ///< share of L by which the dead time may be wrong either way
 };
 
 struct PredictorResult {
     PredictorController controller;
     PredictorFigures figures;
-    std::optional<IdealPid> pid;        ///< the robust PID under the same limit on Ms
+    std::optional<IdealPid> pid;        ///< the robust PID with the predictor's Ms as its limit
     Figure pid_IAE;                     ///< of a unit load
     bool limited_by_dead_time = false;  ///< the window, not Ms, bounds the design
 };

@@ -20,18 +20,31 @@ std::vector<double> quick_IAEs_of(const BlockDiagram& diagram, int enters_at, co
     if (!response || !response->settles()) return out;
     for (std::size_t i = 0; i < out.size(); ++i) {
         const StepResponse nodes = response->pair(outputs[i], outputs[i], target);
-        out[i] = integral_of_absolute_error(nodes.nodes, target, nodes.error_integral_final);
+        if (nodes.error_integral_final)
+            out[i] = integral_of_absolute_error(nodes.nodes, target, nodes.error_integral_final);
     }
     return out;
 }
 
 }  // namespace
 
+Figure ratio(const Figure& above, const Figure& below) {
+    if (!above || !below) return no_figure(below ? above.why : below.why);
+    return finite_or(*above / *below, "It is divided by 0.");
+}
+
 StepFigures figures_of(const StepResponse& nodes, double target) {
-    const ErrorIntegrals integrals = error_integrals(nodes.nodes, target, nodes.error_integral_final);
     const Extremes extremes = extremes_of_y(nodes.nodes);
-    StepFigures figures{.IAE = integrals.IAE, .ISE = integrals.ISE, .TV = total_variation(nodes.nodes)};
-    figures.IE = nodes.error_integral_final.value_or(nodes.nodes.back().error_integral);
+    StepFigures figures{.TV = total_variation(nodes.nodes)};
+    if (nodes.error_integral_final) {
+        const ErrorIntegrals integrals = error_integrals(nodes.nodes, target, nodes.error_integral_final);
+        figures.IAE = integrals.IAE;
+        figures.ISE = integrals.ISE;
+        figures.IE = *nodes.error_integral_final;
+    } else {
+        figures.IAE = figures.ISE = figures.IE =
+            no_figure(nodes.settles ? kRestsElsewhere : "The response does not come to rest.");
+    }
     figures.peak = std::abs(extremes.min) > std::abs(extremes.max) ? extremes.min : extremes.max;
     if (target != 0) figures.overshoot = std::max(0.0, (target > 0 ? extremes.max : extremes.min) / target - 1);
     figures.settles = nodes.settles;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/expected.h"
+#include "engine/figure.h"
 
 namespace tunewright {
 class BlockDiagram;
@@ -12,14 +13,19 @@ struct StepResponse;
 
 namespace tunewright::structure {
 
-/// Of a unit step that enters at one signal; TV of what the controller adds at another.
+/// Of a unit step that enters at one signal; TV of what the controller adds at another. The integrals are infinite, and
+/// so no figures, where y comes to rest away from its target, as without integral action.
 struct StepFigures {
-    double IAE = 0, ISE = 0, TV = 0;
-    double IE = 0;         ///< integral of the error
+    Figure IAE = 0.0, ISE = 0.0;
+    Figure IE = 0.0;  ///< integral of the error
+    double TV = 0;
     double peak = 0;       ///< of y, the farther of both sides
     double overshoot = 0;  ///< of y beyond a target that is not 0, as a share of it
     bool settles = true;
 };
+
+/// above/below; without a value the reason of the one that has none.
+Figure ratio(const Figure& above, const Figure& below);
 
 /// What is measured and moved, and what y should become.
 struct SeenStep {
@@ -33,10 +39,14 @@ Expected<std::vector<StepFigures>> step_figures(const BlockDiagram& diagram, int
 /// Of one output.
 Expected<StepFigures> step_figures(const BlockDiagram& diagram, int enters_at, int y, int u, double target);
 
-/// The same of a response that is known. Without a final error integral the integrals end with the nodes.
+/// The same of a response that is known. It rests at its target if it has a final error integral.
 StepFigures figures_of(const StepResponse& nodes, double target);
 
-/// The IAE alone, at a lower accuracy: 1e-4, for a search.
+/// The reason for integrals that are infinite.
+inline constexpr const char* kRestsElsewhere =
+    "The measurement comes to rest away from its target, so the integral of the error is infinite.";
+
+/// The IAE alone, at a lower accuracy: 1e-4, for a search. Infinite also where y comes to rest away from its target.
 double quick_IAE(const BlockDiagram& diagram, int enters_at, int y, double target);
 /// The same of several outputs that should become 0.
 std::vector<double> quick_IAEs(const BlockDiagram& diagram, int enters_at, const std::vector<int>& outputs);

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Checks that defaults and tolerances are only in their table, engine/tuning/limits.h, and that all texts state the settling
-band of its one constant: defaults_test.py BINARY.
+"""Checks that defaults and tolerances are only in their table, engine/tuning/limits.h, those of structures only in their
+headers, and that all texts state the settling band of its one constant: defaults_test.py BINARY.
 
 No other source defines one; the binary's description of its methods, its help and the documents state the values of
 the table. The defaults of every method's options in the documents are compared with the description as well."""
@@ -20,7 +20,7 @@ TOLERANCE = re.compile(r"\b(?:k(?:Allowed|Reached|HeldOn|Holds|Noticeable)\w*|LI
 
 
 def constants(table: str) -> dict[str, float]:
-    found = {name: value for name, value in re.findall(r"\b(k\w+) = (k?\w[\w.e-]*)", table)}
+    found = {name: value for name, value in re.findall(r"\b(k\w+) = (k[A-Z]\w*|\d[\w.e-]*)", table)}
     return {name: float(found.get(value, value)) for name, value in found.items()}
 
 
@@ -91,6 +91,33 @@ def stated(limits: dict[str, float], band: str) -> dict[str, list[str]]:
     }
 
 
+# The defaults of structures, each in its engine's header; the contract reads them.
+STRUCTURES = "engine/structure/{}.h"
+STRUCTURE_DEFAULTS = {"cascade": ["kDefaultValveOverLoops"], "feedforward": ["kDefaultJump", "kDefaultWrong"],
+                      "interaction": ["kDefaultMu"], "predictor": ["kMaxPredictorMs"]}
+STATED_AGAIN = re.compile(r"\b(?:jump|uncertainty|mu)\s*=\s*[\d.]+;|exclusive_maximum = 2\b|\b1\.15\b")
+
+
+def structure_sentences(defaults: dict[str, float]) -> list[str]:
+    over, jump, wrong, mu, most = (f"{defaults[name]:g}" for names in STRUCTURE_DEFAULTS.values() for name in names)
+    return [f"Its limit is {over} times the larger Ms", f"`jump` is {jump} if none is given",
+            f"differs by `uncertainty` ({100 * float(wrong):g} %)", f"within `limit.mu` ({mu})", f"`Ms` may be at most {most}"]
+
+
+def wrong_structures() -> list[str]:
+    defaults = {}
+    for name, wanted in STRUCTURE_DEFAULTS.items():
+        found = constants((ROOT / STRUCTURES.format(name)).read_text(encoding="utf-8"))
+        defaults |= {one: found[one] for one in wanted}
+    document = " ".join((ROOT / "docs/structures.md").read_text(encoding="utf-8").split())
+    found = [f"docs/structures.md does not say \"{one}\"." for one in structure_sentences(defaults) if one not in document]
+    for path in sorted((ROOT / "api/contract/structure").iterdir()):
+        for at, line in enumerate(without_comments(path.read_text(encoding="utf-8")).splitlines(), 1):
+            if path.suffix in (".h", ".cpp") and STATED_AGAIN.search(line):
+                found.append(f"{path.relative_to(ROOT)}:{at}: {line.strip()}\n    states a default of the engine again.")
+    return found
+
+
 # What states the band within which a response counts as settled.
 BAND = "engine/evaluation/performance_figures.h"
 STATE_BAND = ("engine/evaluation/performance_figures.cpp", "api/contract/result/evaluation.cpp", "web/src/words/figures.ts",
@@ -128,7 +155,7 @@ def faults(binary: str) -> list[str]:
     for name, sentences in stated(limits, band).items():
         document = " ".join((ROOT / "docs" / name).read_text(encoding="utf-8").split())
         found += [f"docs/{name} does not say \"{sentence}\"." for sentence in sentences if sentence not in document]
-    return found + wrong_defaults((ROOT / "docs/methods.md").read_text(encoding="utf-8"), methods)
+    return found + wrong_structures() + wrong_defaults((ROOT / "docs/methods.md").read_text(encoding="utf-8"), methods)
 
 
 def self_test() -> list[str]:
@@ -146,6 +173,8 @@ def self_test() -> list[str]:
         found.append("The check does not see that a document has an old default.")
     if len(wrong_band("a.md", "outside 2 % of the step, within 5 % of it", "2") + wrong_band("b.md", "", "2")) != 2:
         found.append("The check does not see another settling band.")
+    if [bool(STATED_AGAIN.search(line)) for line in ("double jump = 10;", "double jump = structure::kDefaultJump;")] != [True, False]:
+        found.append("The check does not see a default of a structure.")
     if constants("kDefaultMs = 1.5, kDefaultMt = kDefaultMs;\nkX = 2e-5;") != {"kDefaultMs": 1.5, "kDefaultMt": 1.5, "kX": 2e-5}:
         found.append("The check does not read the table.")
     return found

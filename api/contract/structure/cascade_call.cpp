@@ -4,6 +4,9 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/number_text.h"
+#include "engine/structure/step_figures.h"
+
 namespace tunewright::api {
 namespace {
 
@@ -47,7 +50,8 @@ const auto& valve_limit_contract() {
     static const auto description = [] {
         Description<L> d("CascadeLimits", "Limits on both loops together.");
         d.field("Ms_valve", &L::Ms_valve, maybe(number({.exclusive_minimum = 1, .maximum = limits::kMaxMs})),
-                "Limit on max |S| of the loop broken at the valve; default: 1.15 times the larger Ms of both loops.");
+                "Limit on max |S| of the loop broken at the valve; default: " +
+                    tunewright::text(structure::kDefaultValveOverLoops) + " times the larger Ms of both loops.");
         return d;
     }();
     return description;
@@ -68,6 +72,16 @@ const auto& weights_contract() {
     return description;
 }
 
+/// A measurement as the input of a plant. Between samples it moves and is not held: their mean is nearest, held values
+/// would be late by half a sample. A jump between values that stay is one of a held signal.
+void as_input(std::vector<double>& measured) {
+    const std::vector<double> samples = measured;
+    const auto moves = [&](std::size_t k) { return k + 1 < samples.size() && samples[k] != samples[k + 1]; };
+    for (std::size_t k = 0; k + 1 < samples.size(); ++k)
+        if ((moves(k + 1) || (k > 0 && moves(k - 1))) && std::isfinite(samples[k + 1]))
+            measured[k] = (samples[k] + samples[k + 1]) / 2;
+}
+
 /// One record of both plants: the inner one from u to d, the outer one from d to y, or from u in a parallel cascade.
 void split_record(CascadeRequest& request) {
     NamedRecord outer = std::move(request.records.back());
@@ -78,6 +92,7 @@ void split_record(CascadeRequest& request) {
     inner.read.record.y0 = {};
     if (request.arrangement == structure::Arrangement::series) {
         outer.read.record.u = outer.read.record.d.front().values;
+        as_input(outer.read.record.u);
         outer.read.record.u0 = {};
         outer.read.record.u_limits = {};
     }
@@ -115,6 +130,9 @@ void check_sources(CascadeRequest& request, Reader& reader) {
         take_record(request, name, std::string(name) + "/record", std::move(*loop->record), 0,
                     "The record of one loop needs u and y alone. Leave out d.", reader);
     }
+    if (request.arrangement != structure::Arrangement::series) return;
+    for (NamedRecord& one : request.records)
+        if (one.name == "outer") as_input(one.read.record.u);
 }
 
 void check_cascade(const Json& value, CascadeRequest& request, Reader& reader) {
@@ -193,17 +211,15 @@ Json steps_schema(SchemaBook& book) {
 const Description<structure::SingleLoop>& single_loop_contract() {
     static const auto description = [] {
         using S = structure::SingleLoop;
-        const auto peak = [](double S::*member) {
-            return [member](const S& s, Writer& out) { s.stable ? out.number(s.*member) : out.null(); };
-        };
         Description<S> d("SingleLoop", "One controller in place of the cascade, by the method robust.");
         d.field("controller", &S::controller, ideal_controller(), "From the outer measurement to the valve.")
-            .field("Ms", {}, peak(&S::Ms), or_null(number().schema), "Its max |S|.")
-            .field("Mt", {}, peak(&S::Mt), or_null(number().schema), "Its max |T|.")
+            .field("Ms", &S::Ms, peak_figure(), "Its max |S|.")
+            .field("Mt", &S::Mt, peak_figure(), "Its max |T|.")
             .field(
                 "performance", {},
                 [](const S& s, Writer& out) { write_steps(s.inner_load, s.outer_load, s.setpoint, s.stable, out); },
-                steps_schema, "Figures of the outer measurement.");
+                steps_schema, "Figures of the outer measurement.")
+            .why_null("The loop is not stable.");
         return d;
     }();
     return description;
@@ -240,7 +256,7 @@ Figure gain_of(const CascadeAnswer& a, structure::LoadFigures structure::SingleL
                structure::LoadFigures structure::CascadeFigures::*cascade) {
     if (!a.single) return no_figure(a.single.why);
     if (!a.single->stable || !a.result.figures.stable) return no_figure(kUnstableCascade);
-    return finite_or(((*a.single).*single).IAE / (a.result.figures.*cascade).IAE, "It is infinite.");
+    return structure::ratio(((*a.single).*single).IAE, (a.result.figures.*cascade).IAE);
 }
 
 }  // namespace
@@ -304,21 +320,25 @@ const Description<CascadeAnswer>& cascade_answer_contract() {
                 steps_schema,
                 "Figures of the outer measurement after unit steps of a load at the valve, of a load at the outer "
                 "plant's input, and of the set point; TV of the valve.")
-            .field(
-                "speed_ratio", {}, [](const A& a, Writer& out) { figure().write(a.result.figures.speed_ratio, out); },
-                figure().schema, "Gain crossover of the inner over that of the outer loop; null without one.")
+            .field("speed_ratio", &A::result,
+                   computed_figure<structure::CascadeResult>(
+                       [](const structure::CascadeResult& r) { return r.figures.speed_ratio; }),
+                   "Gain crossover of the inner over that of the outer loop; null without one.")
             .field("single", &A::single, or_reason(answer(single_loop_contract())),
                    "One controller without inner loop.")
             .field(
                 "gain", {},
                 [](const A& a, Writer& out) {
-                    write_figures(out, {{"inner_load", gain_of(a, &structure::SingleLoop::inner_load,
-                                                               &structure::CascadeFigures::inner_load)},
-                                        {"outer_load", gain_of(a, &structure::SingleLoop::outer_load,
-                                                               &structure::CascadeFigures::outer_load)}});
+                    write_figures(
+                        out, {{"inner_load",
+                               gain_of(a, &structure::SingleLoop::inner_load, &structure::CascadeFigures::inner_load)},
+                              {"outer_load",
+                               gain_of(a, &structure::SingleLoop::outer_load, &structure::CascadeFigures::outer_load)},
+                              {"setpoint",
+                               gain_of(a, &structure::SingleLoop::setpoint, &structure::CascadeFigures::setpoint)}});
                 },
                 [](SchemaBook&) {
-                    return figures_schema({"inner_load", "outer_load"});
+                    return figures_schema({"inner_load", "outer_load", "setpoint"});
                 },
                 "IAE of the single loop over that of the cascade.")
             .field("baseline", &A::baseline, maybe(answer(baseline_contract())), "The controllers in use.")

@@ -1,7 +1,8 @@
 #include "api/contract/structure/feedforward_call.h"
 
-#include <cmath>
 #include <initializer_list>
+#include <utility>
+#include <vector>
 
 namespace tunewright::api {
 namespace {
@@ -58,6 +59,11 @@ const auto& feedforward_wish_contract() {
     return description;
 }
 
+void check_given(const Json& value, const FeedforwardRequest& request, Reader& reader) {
+    if (request.controller && value.contains("feedforward"))
+        reader.fault_at("feedforward", "feedforward belongs to designs, and controller is given. Remove one of them.");
+}
+
 void check_paths(FeedforwardRequest& request, Reader& reader) {
     if (!request.record) {
         for (const auto& [name, plant] : {std::pair{"plant", &request.plant}, {"disturbance", &request.disturbance}})
@@ -109,30 +115,28 @@ constexpr WrongCase kWrongCases[] = {{"disturbance_gain_low", 0},
                                      {"plant_dead_time_long", 3}};
 
 void write_wrong(const FeedforwardVariant& v, Writer& out) {
-    out.begin_object();
-    bool unknown = false;
-    for (const WrongCase& one : kWrongCases) {
-        const double IAE = v.IAE_if_wrong[one.at];
-        out.key(one.name);
-        std::isfinite(IAE) ? out.number(IAE) : out.null();
-        unknown = unknown || !std::isfinite(IAE);
-    }
-    if (unknown) {
-        out.key("why_null").begin_object();
-        for (const WrongCase& one : kWrongCases)
-            if (!std::isfinite(v.IAE_if_wrong[one.at])) out.key(one.name).text("The loop is not stable then.");
-        out.end_object();
-    }
-    out.end_object();
+    std::vector<std::pair<std::string, Figure>> figures;
+    for (const WrongCase& one : kWrongCases) figures.emplace_back(one.name, v.IAE_if_wrong[one.at]);
+    write_figures(out, figures);
+}
+
+Codec<std::optional<Feedforward>> compensator_or_null() {
+    Codec<std::optional<Feedforward>> codec;
+    codec.write = [](const std::optional<Feedforward>& f, Writer& out) {
+        f ? compensator_contract().write(*f, out) : out.null();
+    };
+    codec.schema = or_null(object(compensator_contract()).schema);
+    codec.undefined = [](const std::optional<Feedforward>& f) { return !f; };
+    return codec;
 }
 
 const Description<FeedforwardVariant>& variant_contract() {
     static const auto description = [] {
         using V = FeedforwardVariant;
         using enum structure::FeedforwardKind;
-        const auto figure_of = [](double structure::StepFigures::*member) {
-            return
-                [member](const V& v, Writer& out) { v.why_not.empty() ? out.number(v.figures.*member) : out.null(); };
+        using S = structure::StepFigures;
+        const auto figure_of = [](auto S::*member) {
+            return computed_figure<S>([member](const S& s) { return s.settles ? Figure(s.*member) : s.IAE; });
         };
         Description<V> d("FeedforwardVariant", "A compensator and its figures after a unit step of the disturbance.");
         d.field(
@@ -140,17 +144,12 @@ const Description<FeedforwardVariant>& variant_contract() {
              only_answered(choice<structure::FeedforwardKind>(kind_words({none, gain, inverse, rule, optimum, given}))),
              "none: feedback alone; static: the gain alone; inverse: lead, lag and delay of both plants; "
              "guzman_hagglund: the rule of 2011; optimum: the least IAE.")
-            .field(
-                "compensator", {},
-                [](const V& v, Writer& out) {
-                    v.compensator ? compensator_contract().write(*v.compensator, out) : out.null();
-                },
-                or_null(object(compensator_contract()).schema), "Null without one, and if it cannot be built.")
-            .field("IAE", {}, figure_of(&structure::StepFigures::IAE), or_null(number().schema),
-                   "Integral of the error's magnitude.")
-            .field("IE", {}, figure_of(&structure::StepFigures::IE), or_null(number().schema), "Integral of the error.")
-            .field("peak", {}, figure_of(&structure::StepFigures::peak), or_null(number().schema), "y farthest from 0.")
-            .field("TV", {}, figure_of(&structure::StepFigures::TV), or_null(number().schema), "Total variation of u.")
+            .field("compensator", &V::compensator, compensator_or_null(),
+                   "Null without one, and if it cannot be built.")
+            .field("IAE", &V::figures, figure_of(&S::IAE), "Integral of the error's magnitude.")
+            .field("IE", &V::figures, figure_of(&S::IE), "Integral of the error.")
+            .field("peak", &V::figures, figure_of(&S::peak), "y farthest from 0.")
+            .field("TV", &V::figures, figure_of(&S::TV), "Total variation of u.")
             .field("u_start", &V::u_start, only_answered(number()), "First move of u.")
             .field(
                 "IAE_if_wrong", {}, write_wrong,
@@ -161,7 +160,8 @@ const Description<FeedforwardVariant>& variant_contract() {
                 "IAE if the disturbance's gain or the plant's dead time differs by `uncertainty`.", {},
                 [](const V& v) { return v.IAE_if_wrong.empty(); })
             .field("why_not", &V::why_not, unless<std::string>(words(), [](const auto& text) { return text.empty(); }),
-                   "Why it cannot be built.");
+                   "Why it cannot be built.")
+            .why_null("There is no compensator.");
         return d;
     }();
     return description;
@@ -185,7 +185,10 @@ const Description<FeedforwardRequest>& feedforward_request_contract() {
                    "A compensator to judge, in place of designs.")
             .field("uncertainty", &R::uncertainty, number({.exclusive_minimum = 0, .exclusive_maximum = 1}),
                    "Share by which the disturbance's gain and the plant's dead time are taken to be wrong.")
-            .check([](const Json&, R& request, Reader& reader) { check_paths(request, reader); })
+            .check([](const Json& value, R& request, Reader& reader) {
+                check_given(value, request, reader);
+                check_paths(request, reader);
+            })
             .example({{"plant", "1.5 e^(-15s)/(60s+1)"},
                       {"disturbance", "1/(15s+1)"},
                       {"feedback", {{"Kp", 1.3333}, {"Ti", 60}}},

@@ -16,11 +16,11 @@ struct FeedforwardRequest : StructureRequest {
     std::optional<GivenRecord> record;  ///< in place of both, with the disturbance as d
     FeedbackWish feedback;
     struct {
-        double jump = 10;
+        double jump = structure::kDefaultJump;
         structure::FeedforwardKind method = structure::FeedforwardKind::optimum;
     } feedforward;
     std::optional<structure::Feedforward> controller;
-    double uncertainty = 0.2;
+    double uncertainty = structure::kDefaultWrong;
 };
 const Description<FeedforwardRequest>& feedforward_request_contract();
 

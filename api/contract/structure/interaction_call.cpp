@@ -114,6 +114,8 @@ void check_interaction(const Json&, InteractionRequest& request, Reader& reader)
             reader.fault_at(name, std::string(name) + " has " + std::to_string(given) + " entries; give " +
                                       std::to_string(n) + ", one for each output.");
     };
+    if (request.compare.size() == 2 && request.compare[0] == request.compare[1])
+        reader.fault_at("compare", "compare names " + request.compare[0] + " twice. Remove one of them.");
     check_device_count(request, n, reader);
     count("controllers", request.controllers.given.size());
     if (request.baseline) count("baseline", request.baseline->given.size());
@@ -183,27 +185,38 @@ const Description<structure::Pairing>& pairing_contract() {
     return description;
 }
 
+bool all_finite(const std::vector<double>& row) {
+    return std::ranges::all_of(row, [](double value) { return std::isfinite(value); });
+}
+
 /// The members that figures of any controllers have.
-template <class T, class FiguresOf>
-void add_figures(Description<T>& d, const FiguresOf& figures_of) {
+template <class T>
+void add_figures(Description<T>& d) {
     using F = structure::InteractionFigures;
     const auto row = [&](const char* name, std::vector<double> F::*member, const char* sentence) {
-        d.field(
-            name, {}, [=](const T& t, Writer& out) { write_row(figures_of(t).*member, out); }, row_schema, sentence);
+        Codec<F> codec;
+        codec.write = [member](const F& f, Writer& out) { write_row(f.*member, out); };
+        codec.schema = row_schema;
+        codec.undefined = [member](const F& f) { return !all_finite(f.*member); };
+        codec.why = [](const F&) { return "With the others in manual the loop is not stable."; };
+        d.field(name, &T::figures, codec, sentence);
     };
     const auto table = [&](const char* name, structure::Table F::*member, const char* sentence) {
-        d.field(
-            name, {}, [=](const T& t, Writer& out) { write_table(figures_of(t).*member, out); }, table_schema,
-            sentence);
+        Codec<F> codec;
+        codec.write = [member](const F& f, Writer& out) { write_table(f.*member, out); };
+        codec.schema = table_schema;
+        codec.undefined = [member](const F& f) { return !std::ranges::all_of(f.*member, all_finite); };
+        codec.why = [](const F&) { return structure::kRestsElsewhere; };
+        d.field(name, &T::figures, codec, sentence);
     };
     const auto value = [&](const char* name, double F::*member, const char* sentence, const FieldOptions& options) {
-        d.field(
-            name, {},
-            [=](const T& t, Writer& out) { figures_of(t).stable ? out.number(figures_of(t).*member) : out.null(); },
-            or_null(number().schema), sentence, options);
+        d.field(name, &T::figures, computed_figure<F>([member](const F& f) {
+                    return known_unless(f.*member, f.stable ? "" : kUnstableLoops);
+                }),
+                sentence, options);
     };
     d.field(
-        "stable", {}, [=](const T& t, Writer& out) { out.boolean(figures_of(t).stable); }, boolean().schema,
+        "stable", {}, [](const T& t, Writer& out) { out.boolean(t.figures.stable); }, boolean().schema,
         "All loops together are stable; else the figures are null or empty.");
     row("Ms_alone", &F::Ms_alone, "max |S| of each loop with the others in manual; null: not stable then.");
     row("Ms_others_closed", &F::Ms_others_closed, "max |S| of each loop with the others in automatic.");
@@ -221,12 +234,11 @@ const Description<ComparedControllers>& compared_contract() {
         d.field("name", &C::name, words(), "blt, detuned or baseline.")
             .field("controllers", &C::controllers, only_answered(list_of(ideal_controller())),
                    "In the order of the outputs.");
-        add_figures(d, [](const C& c) -> const structure::InteractionFigures& { return c.figures; });
-        d.field(
-             "cost", {}, [](const C& c, Writer& out) { c.figures.stable ? out.number(c.cost) : out.null(); },
-             or_null(number().schema), "Weighted sum of IAE_load.")
+        add_figures(d);
+        d.field("cost", &C::cost, figure(), "Weighted sum of IAE_load.")
             .field("why_not", &C::why, unless<std::string>(words(), [](const auto& text) { return text.empty(); }),
-                   "Why there are none.");
+                   "Why there are none.")
+            .why_null(kUnstableLoops);
         return d;
     }();
     return description;
@@ -317,10 +329,8 @@ const Description<InteractionAnswer>& interaction_answer_contract() {
                 whole_numbers_schema, "The pairing of the controllers: the input of each output, from 1.")
             .field("controllers", &A::controllers, only_answered(list_of(ideal_controller())),
                    "In the order of the outputs.");
-        add_figures(d, [](const A& a) -> const structure::InteractionFigures& { return a.figures; });
-        d.field(
-             "cost", {}, [](const A& a, Writer& out) { a.figures.stable ? out.number(a.cost) : out.null(); },
-             or_null(number().schema), "Weighted sum of IAE_load.")
+        add_figures(d);
+        d.field("cost", &A::cost, figure(), "Weighted sum of IAE_load.")
             .field("manual", {}, write_manual, manual_schema,
                    "may_open: each loop may be put in manual; unstable_in_automatic: sets of loops, from 1, that are "
                    "not stable with the others in manual.")

@@ -17,7 +17,7 @@ struct InteractionRequest : StructureRequest {
     std::optional<std::vector<int>> pairing;                ///< of each output the input, from 1
     InteractionControllers controllers;
     struct {
-        double mu = 1.8;
+        double mu = structure::kDefaultMu;
     } limit;
     struct {
         std::vector<double> y;
@@ -34,7 +34,7 @@ struct ComparedControllers {
     std::string name;
     std::vector<IdealPid> controllers;
     structure::InteractionFigures figures;
-    double cost = 0;  ///< weighted sum of the IAE after loads
+    Figure cost;      ///< weighted sum of the IAE after loads
     std::string why;  ///< there are none, for this reason
 };
 
@@ -43,7 +43,7 @@ struct InteractionAnswer : StructureAnswer {
     std::size_t chosen = 0;  ///< of gains.pairings
     std::vector<IdealPid> controllers;
     structure::InteractionFigures figures;
-    double cost = 0;
+    Figure cost;
     Figure F;  ///< of the BLT settings
     std::vector<ComparedControllers> compared;
 };

@@ -1,7 +1,5 @@
 #include "api/contract/structure/level_call.h"
 
-#include <cmath>
-
 namespace tunewright::api {
 namespace {
 
@@ -53,25 +51,21 @@ void check_level(const Json& value, LevelRequest& request, Reader& reader) {
 
 /// A number of every design; time and Ti are infinite without integral action.
 Description<LevelDesign>& add_design(Description<LevelDesign>& d) {
-    const auto of = [](double LevelDesign::*member, const char* why) {
-        return [member, why](const LevelDesign& design) { return finite_or(design.*member, why); };
-    };
-    const auto field = [&](const char* name, auto value, const char* sentence, const FieldOptions& options) {
-        d.field(
-            name, {}, [value](const LevelDesign& design, Writer& out) { figure().write(value(design), out); },
-            figure().schema, sentence, options);
-    };
-    field("Kc", of(&LevelDesign::Kc, ""), "Gain: flow per level.", {.unit = "u/y"});
-    field("Ti", of(&LevelDesign::Ti, ""), "Integral time; null: proportional action alone.", {.unit = "time"});
-    field("zeta", of(&LevelDesign::zeta, ""), "Damping; 0 without integral action.", {});
-    field("highest", of(&LevelDesign::highest, ""), "The highest level after the largest step.", {.unit = "y"});
-    field("time_of_highest", of(&LevelDesign::time_of_highest, ""),
-          "Its time; null: the level approaches it without end.", {.unit = "time"});
-    field("largest_rate", of(&LevelDesign::largest_rate, ""), "The largest rate of the outflow.", {.unit = "u/time"});
-    field("rate_over_bound", of(&LevelDesign::rate_over_bound, ""), "It over the bound for any controller.", {});
-    field("overshoot_percent", of(&LevelDesign::overshoot_percent, ""),
-          "Overshoot of the outflow in percent of the step.", {.unit = "%"});
-    return d;
+    using L = LevelDesign;
+    const Codec<double> finite = finite_figure("");
+    return d.field("Kc", &L::Kc, finite, "Gain: flow per level.", {.unit = "u/y"})
+        .field("Ti", &L::Ti, finite_figure("There is no integral action."),
+               "Integral time; null: proportional action alone.", {.unit = "time"})
+        .field("zeta", &L::zeta, finite, "Damping; 0 without integral action.")
+        .field("highest", &L::highest, finite, "The highest level after the largest step.", {.unit = "y"})
+        .field("time_of_highest", &L::time_of_highest,
+               finite_figure("The level approaches its highest value without end."),
+               "Its time; null: the level approaches it without end.", {.unit = "time"})
+        .field("largest_rate", &L::largest_rate, finite, "The largest rate of the outflow.", {.unit = "u/time"})
+        .field("rate_over_bound", &L::rate_over_bound, finite, "It over the bound for any controller.")
+        .field("overshoot_percent", &L::overshoot_percent, finite, "Overshoot of the outflow in percent of the step.",
+               {.unit = "%"})
+        .why_null("It is infinite.");
 }
 
 const Description<LevelDesign>& level_design_contract() {

@@ -1,5 +1,7 @@
 #include "api/contract/structure/predictor_call.h"
 
+#include "engine/number_text.h"
+
 namespace tunewright::api {
 namespace {
 
@@ -7,6 +9,7 @@ using structure::PredictorController;
 using structure::Rational;
 
 constexpr std::size_t kMaxCoefficients = 8;
+constexpr const char* kUnstable = "The loop is not stable.";
 
 const Description<Rational>& rational_contract() {
     static const auto description = [] {
@@ -58,7 +61,7 @@ void check_predictor(const Json& value, PredictorRequest& request, Reader& reade
     request.of_model = *model;
     if (!request.controller) return;
     request.controller->model = *model;
-    for (const char* name : {"kind", "dead_time_error"})
+    for (const char* name : {"kind", "Ms", "dead_time_error"})
         if (value.contains(name))
             reader.fault_at(name,
                             std::string(name) + " belongs to a design, and controller is given. Remove one of them.");
@@ -81,29 +84,25 @@ Json model_schema(SchemaBook&) {
 const Description<structure::PredictorFigures>& predictor_figures_contract() {
     static const auto description = [] {
         using F = structure::PredictorFigures;
-        const auto peak = [](double F::*member) {
-            return [member](const F& f, Writer& out) { f.stable ? out.number(f.*member) : out.null(); };
-        };
         Description<F> d("PredictorRobustness", "Figures of the loop over frequency.");
         d.field("stable", &F::stable, only_answered(boolean()), "The loop is stable.")
             .field(
                 "controller_stable", {}, [](const F& f, Writer& out) { out.boolean(f.controller_unstable_poles == 0); },
                 boolean().schema, "The controller by itself is stable.")
-            .field("Ms", {}, peak(&F::Ms), or_null(number().schema), "max |S|.")
-            .field("Mt", {}, peak(&F::Mt), or_null(number().schema), "max |T|.")
+            .field("Ms", &F::Ms, peak_figure(), "max |S|.")
+            .field("Mt", &F::Mt, peak_figure(), "max |T|.")
             .field("dead_time_up", &F::dead_time_up, figure(),
                    "By this much the dead time may rise: the loop stays stable at every smaller error.",
                    {.unit = "time"})
             .field("dead_time_down", &F::dead_time_down, figure(), "By this much it may fall.", {.unit = "time"})
-            .why_null("The loop is not stable.");
+            .why_null(kUnstable);
         return d;
     }();
     return description;
 }
 
-StepView view_of(const OrReason<structure::StepFigures>& f, bool stable, bool setpoint) {
-    if (!stable) return {0, 0, 0, 0, "The loop is not stable."};
-    if (!f) return {0, 0, 0, 0, f.why};
+StepView view_of(const OrReason<structure::StepFigures>& f, bool setpoint) {
+    if (!f) return {0.0, 0.0, 0, 0, f.why};
     return {f->IAE, f->IE, setpoint ? f->overshoot : f->peak, f->TV, ""};
 }
 
@@ -116,7 +115,7 @@ const Description<PredictorRequest>& predictor_request_contract() {
         using enum structure::PredictorKind;
         const auto kind = choice<structure::PredictorKind>(
             {{"smith", smith}, {"filtered_smith", filtered_smith}, {"predictive_pi", predictive_pi}});
-        const auto Ms = number({.exclusive_minimum = 1, .exclusive_maximum = 2});
+        const auto Ms = number({.exclusive_minimum = 1, .maximum = structure::kMaxPredictorMs});
         const auto error = maybe(number({.exclusive_minimum = 0, .maximum = 1}));
         Description<R> d("PredictorRequest", "A loop with a long dead time.");
         add_structure_members(d, "predictor", 1);
@@ -130,7 +129,7 @@ const Description<PredictorRequest>& predictor_request_contract() {
                 "settings, no limit is used.")
             .field(
                 "Ms", [Ms](const Json& value, R& r, Reader& reader) { Ms.read(value, r.design.Ms, reader); }, {},
-                Ms.schema, "Limit on max |S| of the predictor and of the PID; default 1.4.")
+                Ms.schema, "Limit on max |S| of the predictor; default " + tunewright::text(limits::kDefaultMs) + ".")
             .field(
                 "dead_time_error",
                 [error](const Json& value, R& r, Reader& reader) {
@@ -176,17 +175,14 @@ const Description<PredictorAnswer>& predictor_answer_contract() {
             .field("robustness", &A::figures, answer(predictor_figures_contract()), "Over frequency.")
             .field(
                 "load", {},
-                [](const A& a, Writer& out) {
-                    step_view_contract().write(view_of(a.figures.load, a.figures.stable, false), out);
-                },
+                [](const A& a, Writer& out) { step_view_contract().write(view_of(a.figures.load, false), out); },
                 object(step_view_contract()).schema, "After a unit load at the plant's input.")
             .field(
                 "setpoint", {},
-                [](const A& a, Writer& out) {
-                    step_view_contract().write(view_of(a.figures.setpoint, a.figures.stable, true), out);
-                },
+                [](const A& a, Writer& out) { step_view_contract().write(view_of(a.figures.setpoint, true), out); },
                 object(step_view_contract()).schema, "After a unit step of the set point.")
-            .field("pid", &A::pid, or_reason(ideal_controller()), "The robust PID under the same limit on Ms.")
+            .field("pid", &A::pid, or_reason(ideal_controller()),
+                   "The robust PID with the Ms of the predictor as its limit.")
             .field("pid_IAE", &A::pid_IAE, figure(), "IAE of a unit load with it.", {.unit = "y time/u"})
             .why_null("Not found.");
         add_answer_members(d);

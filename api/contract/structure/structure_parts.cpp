@@ -89,11 +89,18 @@ const Description<structure::LoopDesign>& loop_design_contract() {
     return description;
 }
 
-Figure known_unless(double value, const std::string& why) {
-    return why.empty() ? finite_or(value, "It is infinite.") : no_figure(why);
+Figure known_unless(const Figure& value, const std::string& why) { return why.empty() ? value : no_figure(why); }
+
+Codec<double> finite_figure(std::string why) {
+    return computed_figure<double>([why](const double& value) { return finite_or(value, why); });
 }
 
-StepView::StepView(double IAE, double IE, double peak, double TV, const std::string& why)
+Codec<double> peak_figure() {
+    return computed_figure<double>(
+        [](const double& value) { return value > 0 ? Figure(value) : no_figure("The loop is not stable."); });
+}
+
+StepView::StepView(const Figure& IAE, const Figure& IE, double peak, double TV, const std::string& why)
     : IAE(known_unless(IAE, why)),
       IE(known_unless(IE, why)),
       peak(known_unless(peak, why)),
@@ -113,6 +120,17 @@ const Description<StepView>& step_view_contract() {
     return description;
 }
 
+namespace {
+
+/// An object of figures with any names.
+Json any_figures_schema(SchemaBook&) {
+    return {{"type", "object"},
+            {"properties", {{"why_null", {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}}}},
+            {"additionalProperties", {{"type", {"number", "null"}}}}};
+}
+
+}  // namespace
+
 const Description<structure::Conclusion>& conclusion_contract() {
     static const auto description = [] {
         using C = structure::Conclusion;
@@ -120,7 +138,12 @@ const Description<structure::Conclusion>& conclusion_contract() {
         for (const auto code : structure::all_conclusion_codes()) words.emplace_back(to_string(code), code);
         Description<C> d("Conclusion", "A conclusion from the figures of the answer.");
         d.field("code", &C::code, only_answered(choice<structure::ConclusionCode>(words)), "What holds.")
-            .field("figures", &C::figures, numbers_by_name("Names of figures."), "Its figures by name.");
+            .field(
+                "figures", {},
+                [](const C& c, Writer& out) {
+                    write_figures(out, {c.figures.begin(), c.figures.end()});
+                },
+                any_figures_schema, "Its figures by name.");
         return d;
     }();
     return description;
@@ -340,13 +363,7 @@ const Description<SampledView>& sampled_view_contract() {
                 [](const V& v, Writer& out) {
                     write_figures(out, {v.answer.Ms.begin(), v.answer.Ms.end()});
                 },
-                [](SchemaBook&) {
-                    return Json{{"type", "object"},
-                                {"properties",
-                                 {{"why_null", {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}}}},
-                                {"additionalProperties", {{"type", {"number", "null"}}}}};
-                },
-                "Peak of the sampled loop at each place, without limits.")
+                any_figures_schema, "Peak of the sampled loop at each place, without limits.")
             .field(
                 "responses", {},
                 [](const V& v, Writer& out) {
@@ -408,8 +425,7 @@ void write_curves(const structure::StructureDrawing& drawing, Writer& out) {
         out.begin_object();
         out.key("of").text(curve.of);
         out.key("loop").text(curve.loop);
-        out.key("limit");
-        curve.limit ? out.number(*curve.limit) : out.null();
+        if (curve.limit) out.key("limit").number(*curve.limit);
         out.key("values").numbers(curve.values);
         out.end_object();
     }
@@ -419,13 +435,10 @@ void write_curves(const structure::StructureDrawing& drawing, Writer& out) {
 
 Json curves_schema(SchemaBook&) {
     const Json text{{"type", "string"}};
+    Json curves = list_schema({{"of", text}, {"loop", text}, {"values", series_schema()}});
+    curves["items"]["properties"]["limit"] = {{"type", "number"}};
     return {{"type", "object"},
-            {"properties",
-             {{"omega", series_schema()},
-              {"curves", list_schema({{"of", text},
-                                      {"loop", text},
-                                      {"limit", {{"type", {"number", "null"}}}},
-                                      {"values", series_schema()}})}}},
+            {"properties", {{"omega", series_schema()}, {"curves", curves}}},
             {"required", {"omega", "curves"}}};
 }
 

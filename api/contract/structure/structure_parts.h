@@ -161,7 +161,10 @@ void add_answer_members(Description<Answered>& d) {
             "Series over time; the steps have the size 1, or the largest step of a level.")
         .field(
             "sensitivities", {}, [](const Answered& a, Writer& out) { write_curves(a.drawing, out); }, curves_schema,
-            "|S| over frequency, of the loop broken at one place, and mu.")
+            "|S| over frequency, of the loop broken at one place, and mu; with its limit, if it has one.")
+        .field(
+            "version", {}, [](const Answered&, Writer& out) { out.text(TUNEWRIGHT_VERSION); }, words().schema,
+            "Version of the service.")
         .field("units", &A::units, only_answered(maybe(object(units_contract()))), "As in the request.")
         .field("request_hash", &A::request_hash,
                unless<std::string>(words(), [](const std::string& hash) { return hash.empty(); }),
@@ -186,12 +189,28 @@ struct StepView {
 
     StepView() = default;
     /// `why` not empty: none is known, for this reason.
-    StepView(double IAE, double IE, double peak, double TV, const std::string& why);
+    StepView(const Figure& IAE, const Figure& IE, double peak, double TV, const std::string& why);
 };
 const Description<StepView>& step_view_contract();
 
 /// The value, or `why` if that is not empty.
-Figure known_unless(double value, const std::string& why);
+Figure known_unless(const Figure& value, const std::string& why);
+
+/// A figure that is computed from a part of an answer.
+template <class Part>
+Codec<Part> computed_figure(Callable<Figure(const Part&)> value) {
+    Codec<Part> codec;
+    codec.write = [value](const Part& part, Writer& out) { figure().write(value(part), out); };
+    codec.schema = figure().schema;
+    codec.undefined = [value](const Part& part) { return !value(part); };
+    codec.why = [value](const Part& part) { return value(part).why; };
+    return codec;
+}
+
+/// A number that is infinite for the reason `why`, or for the description's.
+Codec<double> finite_figure(std::string why);
+/// A peak over frequency, 0 where the loop is not stable.
+Codec<double> peak_figure();
 
 /// An object of figures, with the reasons of those that are not known, and its schema.
 void write_figures(Writer& out, const std::vector<std::pair<std::string, Figure>>& figures);

@@ -123,10 +123,11 @@ StructureDrawing draw(const LevelProblem& problem, const LevelDesign& design, in
     return drawing_of(views, points);
 }
 
-StructureDrawing draw(const FeedforwardProblem& problem, const FeedforwardResult& result, int points) {
+StructureDrawing draw(const FeedforwardProblem& problem, const FeedforwardResult& result, std::optional<double> limit,
+                      int points) {
     Views views;
     for (const FeedforwardVariant& variant : result.variants)
-        if (variant.why_not.empty()) add(views, feedforward_view(problem, variant));
+        if (variant.why_not.empty()) add(views, feedforward_view(problem, variant, limit));
     // The loop's peak is that of each variant.
     for (std::size_t i = 1; i < views.size(); ++i) views[i].curves.clear();
     return drawing_of(views, points);

@@ -42,8 +42,9 @@ StructureDrawing draw(const CascadePlants& plants, const CascadeControllers& con
 /// `of`: design. Of a controller with a gap there is none.
 StructureDrawing draw(const LevelProblem& problem, const LevelDesign& design, int points);
 
-/// `of`: the names of the variants that can be built.
-StructureDrawing draw(const FeedforwardProblem& problem, const FeedforwardResult& result, int points);
+/// `of`: the names of the variants that can be built. `limit`: on |S| of the feedback loop.
+StructureDrawing draw(const FeedforwardProblem& problem, const FeedforwardResult& result, std::optional<double> limit,
+                      int points);
 
 /// Controllers by their names, the design first; `limit`: its limit on mu.
 using NamedControllers = std::vector<std::pair<std::string, std::vector<IdealPid>>>;

@@ -43,7 +43,8 @@ struct StructureView {
 
 // The views of each structure. Errors: those of the block diagram.
 
-/// Inputs setpoint, outer_load, inner_load; outputs y1, y2, u; loops inner, outer, valve. `limits` null: none.
+/// Inputs setpoint, outer_load, inner_load; outputs y1, y2, u; loops inner, outer, valve. `limits` null: none. Error:
+/// unsupported if the inner loop by itself is not stable.
 Expected<StructureView> cascade_view(const std::string& of, const CascadePlants& plants,
                                      const CascadeControllers& controllers, const CascadeDesign* limits);
 /// The same without an inner loop; loop valve. No limit.
@@ -52,8 +53,9 @@ Expected<StructureView> single_view(const CascadePlants& plants, const IdealPid&
 /// Input inflow, a step of the largest size; outputs level and outflow; loop level. A gap is left out.
 Expected<StructureView> level_view(const LevelProblem& problem, const LevelDesign& design);
 
-/// Input disturbance; outputs y, u; loop: that of the feedback.
-Expected<StructureView> feedforward_view(const FeedforwardProblem& problem, const FeedforwardVariant& variant);
+/// Input disturbance; outputs y, u; loop: that of the feedback. `limit` empty: none.
+Expected<StructureView> feedforward_view(const FeedforwardProblem& problem, const FeedforwardVariant& variant,
+                                         std::optional<double> limit);
 
 /// Inputs setpoint_1, load_1 and so on; outputs y_1, u_1 and so on; loops 1 and so on, and mu. `limit` empty: none.
 Expected<StructureView> interaction_view(const std::string& of, const PlantMatrix& plants,

@@ -129,12 +129,6 @@ Expected<ParallelPid> predictor_pid(const PredictorController& controller) {
     return pid;
 }
 
-Expected<Program> predictor_program(const PredictorController& controller, double Ts, const code::CodeOptions& u) {
-    const auto gains = predictor_pid(controller);
-    if (!gains) return gains.error();
-    return predictor_program(controller, SampledPid{.gains = *gains, .Ts = Ts}, u);
-}
-
 Expected<Program> predictor_program(const PredictorController& controller, const SampledPid& law,
                                     const code::CodeOptions& u) {
     const double Ts = law.Ts;

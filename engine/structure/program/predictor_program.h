@@ -20,15 +20,13 @@
 namespace tunewright::structure {
 
 /// `law`: the rules and the sample time; its gains are those of predictor_pid(). All times in seconds. Errors:
-/// unsupported for a C that is no PID ("controller/C"), and for an integrating or unstable model whose pole F does not
-/// cancel ("controller/F"); invalid_argument ("sample_time") for a dead time of more than kMaxDelayCalls calls; those
-/// of pid_algorithm().
+/// unsupported for an integrating or unstable model whose pole F does not cancel ("controller/F"); invalid_argument
+/// ("sample_time") for a dead time of more than kMaxDelayCalls calls; those of pid_algorithm().
 Expected<code::Program> predictor_program(const PredictorController& controller, const SampledPid& law,
                                           const code::CodeOptions& u);
-/// With the usual rules.
-Expected<code::Program> predictor_program(const PredictorController& controller, double Ts, const code::CodeOptions& u);
 
-/// C as a PID: a proportional part, an integral part, and a derivative part with a filter. Error: unsupported.
+/// C as a PID: a proportional part, an integral part, and a derivative part with a filter. Error: unsupported
+/// ("controller/C").
 Expected<ParallelPid> predictor_pid(const PredictorController& controller);
 
 }  // namespace tunewright::structure

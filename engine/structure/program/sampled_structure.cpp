@@ -11,6 +11,7 @@
 #include "engine/loop/sampled/held_plant.h"
 #include "engine/numerics/fourier.h"
 #include "engine/numerics/optimise/line_search.h"
+#include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
 #include "engine/simulation/run/held_motion.h"
 #include "engine/simulation/run/stopping_rule.h"
@@ -22,9 +23,10 @@ namespace {
 using Index = std::size_t;
 
 constexpr int kMaxCalls = 40000;
-constexpr double kSettled = 1e-6;  // of each signal's largest deviation
-constexpr double kWindow = 1.5;    // a response has settled if it rests from some time until this many times that time
-constexpr int kFirstCalls = 40;    // and two dead times: before that no response has settled
+constexpr double kSettled = 1e-6;   // of each signal's largest deviation
+constexpr double kAtTarget = 1e-4;  // of the largest deviation: where a response that rests has no error
+constexpr double kWindow = 1.5;     // a response has settled if it rests from some time until this many times that time
+constexpr int kFirstCalls = 40;     // and two dead times: before that no response has settled
 constexpr Index kFinerSpectrum = 4;  // frequencies for each call
 constexpr int kSections = 30;        // of the golden section between two of them
 
@@ -143,12 +145,21 @@ public:
             StepResponse all;
             all.nodes = std::move(nodes_[i]);
             all.settles = settles;
+            if (settles) all.error_integral_final = final_integral(all.nodes, target(i));
             out.figures.push_back(figures_of(all, target(i)));
         }
         double before = 0;
         for (const double u : out.u.front())
             out.largest_rate = std::max(out.largest_rate, std::abs(u - std::exchange(before, u)) / Ts_);
         return out;
+    }
+
+    /// Of a response that rests: empty if it does so away from its target.
+    static std::optional<double> final_integral(const std::vector<ResponseNode>& nodes, double target) {
+        const Extremes extremes = extremes_of_y(nodes);
+        const double largest = std::max({std::abs(target), extremes.max, -extremes.min});
+        if (std::abs(target - nodes.back().y) > kAtTarget * largest) return std::nullopt;
+        return nodes.back().error_integral;
     }
 
     /// The largest magnitude of the transform of the place's signal.

@@ -119,7 +119,7 @@ TEST(DiagramResponse, ALoopWithIntegralActionHasTheIntegralErrorOfItsTiOverKp) {
     diagram.add(signals->output, y, first_order(2, 10, 3));
     const auto figures = structure::step_figures(diagram, signals->output, y, signals->output, 0);
     ASSERT_TRUE(figures);
-    EXPECT_NEAR(figures->IE, -15, 1e-6);
+    EXPECT_NEAR(*figures->IE, -15, 1e-6);
     EXPECT_TRUE(figures->settles);
 }
 

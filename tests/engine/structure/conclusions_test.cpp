@@ -37,6 +37,57 @@ TEST(Conclusions, ACascadePaysFromOneAndAHalfTimesLessIaeOn) {
     }
 }
 
+TEST(Conclusions, AJointDesignPaysByTheSumThatItWeighs) {
+    CascadeFigures figures;
+    figures.stable = true;
+    figures.inner_load.IAE = figures.outer_load.IAE = figures.setpoint.IAE = 1;
+    SingleLoop single;
+    single.stable = true;
+    single.inner_load.IAE = 4;
+    single.outer_load.IAE = 0.9;
+    single.setpoint.IAE = 0.8;
+    CascadeDesign design;
+    const auto pays = [&] { return has(conclusions_on(figures, design, &single), ConclusionCode::cascade_pays); };
+    EXPECT_TRUE(pays());
+    const Conclusion found = conclusions_on(figures, design, &single).front();
+    EXPECT_DOUBLE_EQ(*found.figures.at("gain_outer"), 0.9);
+    EXPECT_DOUBLE_EQ(*found.figures.at("gain_setpoint"), 0.8);
+    design.joint = true;
+    EXPECT_TRUE(pays()) << "4.9 over 2";
+    design.weight_outer = 9;
+    EXPECT_FALSE(pays()) << "12.1 over 10";
+    design.joint = false;
+    EXPECT_TRUE(pays());
+}
+
+TEST(Conclusions, AnInfiniteIaeIsComparedAsSuchAndGivesItsReason) {
+    CascadeFigures figures;
+    figures.stable = true;
+    figures.inner_load.IAE = no_figure("infinite");
+    SingleLoop single;
+    single.stable = true;
+    single.inner_load.IAE = 1;
+    const Conclusion found = conclusions_on(figures, {}, &single).front();
+    EXPECT_EQ(found.code, ConclusionCode::cascade_gains_little);
+    EXPECT_EQ(found.figures.at("gain_inner").why, "infinite");
+    single.inner_load.IAE = no_figure("infinite");
+    EXPECT_TRUE(conclusions_on(figures, {}, &single).empty()) << "neither is less than the other";
+}
+
+TEST(Conclusions, LoopsThatAreNotStableAreNotCalledHardlyInteracting) {
+    GainAnalysis gains;
+    gains.pairings = {{.input_of = {0, 1}, .niederlinski = 1.0, .relative = {1, 1}, .at_crossover = {1, 1}}};
+    InteractionFigures figures;
+    figures.mu = 1.5;
+    for (const bool stable : {true, false}) {
+        figures.stable = stable;
+        const auto found = conclusions_on(figures, gains, 0, 1.8, 1, 2);
+        EXPECT_EQ(has(found, ConclusionCode::hardly_interacting), stable);
+        EXPECT_EQ(has(found, ConclusionCode::better_than_blt), stable);
+        EXPECT_EQ(has(found, ConclusionCode::unstable), !stable);
+    }
+}
+
 TEST(Conclusions, PeaksAndSpeedAreComparedWithTheirLimits) {
     CascadeFigures figures;
     figures.stable = true;
@@ -49,8 +100,8 @@ TEST(Conclusions, PeaksAndSpeedAreComparedWithTheirLimits) {
     figures.speed_ratio = 2.99;
     const auto found = conclusions_on(figures, design, nullptr);
     ASSERT_TRUE(has(found, ConclusionCode::valve_peak_above) && has(found, ConclusionCode::inner_too_slow));
-    EXPECT_EQ(found.back().figures.at("limit"), 1.5);
-    EXPECT_EQ(found.back().figures.at("Ms"), 1.51);
+    EXPECT_EQ(*found.back().figures.at("limit"), 1.5);
+    EXPECT_EQ(*found.back().figures.at("Ms"), 1.51);
 }
 
 TEST(Conclusions, APidDoesAsWellUpToTwoPercentMoreIae) {

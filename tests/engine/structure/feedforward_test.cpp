@@ -23,9 +23,9 @@ TEST(Feedforward, WhereTheValveIsAsQuickTheInverseIsExact) {
         const auto result =
             design_feedforward({first_order(1.5, 60, 15), first_order(0.8, 15, Ld), pi(4.0 / 3, 60), 10}, {});
         ASSERT_TRUE(result);
-        const double none = variant(*result, FeedforwardKind::none).figures.IAE;
+        const double none = *variant(*result, FeedforwardKind::none).figures.IAE;
         for (const auto kind : {FeedforwardKind::inverse, FeedforwardKind::optimum}) {
-            EXPECT_LT(variant(*result, kind).figures.IAE, 1e-6 * none) << Ld;
+            EXPECT_LT(*variant(*result, kind).figures.IAE, 1e-6 * none) << Ld;
             EXPECT_NEAR(variant(*result, kind).compensator->Lf, Ld - 15, 1e-12);
         }
         EXPECT_EQ(result->peak_bound, 0);
@@ -52,7 +52,7 @@ TEST(Feedforward, TheIntegralOfTheErrorFollowsFromTheStaticGainWhateverTheDynami
         const auto judged = judge_feedforward(problem, f);
         ASSERT_TRUE(judged);
         // Of the error r - y: (K Kf - Kd) Ti/(K Kp).
-        EXPECT_NEAR(judged->figures.IE, (1.5 * f.Kf - 1) * 60 / (1.5 * 4 / 3), 1e-6 * judged->figures.IAE);
+        EXPECT_NEAR(*judged->figures.IE, (1.5 * f.Kf - 1) * 60 / (1.5 * 4 / 3), 1e-6 * *judged->figures.IAE);
     }
 }
 
@@ -76,11 +76,11 @@ TEST(Feedforward, OptimaAreAtMostTwoPerMilleAboveThoseOfAnIndependentSearch) {
         const auto result = design_feedforward(row.problem, {});
         ASSERT_TRUE(result);
         const FeedforwardVariant& best = variant(*result, FeedforwardKind::optimum);
-        EXPECT_LE(best.figures.IAE, 1.002 * row.IAE);
+        EXPECT_LE(*best.figures.IAE, 1.002 * row.IAE);
         EXPECT_LE(std::abs(best.compensator->jump()), row.problem.jump * (1 + 1e-9));
         for (const FeedforwardVariant& other : result->variants)
             if (other.compensator && std::abs(other.compensator->jump()) <= row.problem.jump) {
-                EXPECT_LE(best.figures.IAE, other.figures.IAE * (1 + 1e-5));
+                EXPECT_LE(*best.figures.IAE, *other.figures.IAE * (1 + 1e-5));
             }
     }
 }
@@ -89,10 +89,10 @@ TEST(Feedforward, TheFiguresOfThePublishedExampleAreThoseOfAnIndependentProgram)
     // process-control-toolbox, article 8, Ld = 0: without noise 366.3/12, 442.7/12, 256.7/12; peak 7.585/12.
     const auto result = design_feedforward(toolbox_late(12), {});
     ASSERT_TRUE(result);
-    EXPECT_NEAR(variant(*result, FeedforwardKind::none).figures.IAE, 366.3 / 12, 0.01);
-    EXPECT_NEAR(variant(*result, FeedforwardKind::gain).figures.IAE, 442.7 / 12, 0.01);
-    EXPECT_NEAR(variant(*result, FeedforwardKind::inverse).figures.IAE, 256.7 / 12, 0.01);
-    EXPECT_NEAR(variant(*result, FeedforwardKind::rule).figures.IAE, 12.62, 0.01);
+    EXPECT_NEAR(*variant(*result, FeedforwardKind::none).figures.IAE, 366.3 / 12, 0.01);
+    EXPECT_NEAR(*variant(*result, FeedforwardKind::gain).figures.IAE, 442.7 / 12, 0.01);
+    EXPECT_NEAR(*variant(*result, FeedforwardKind::inverse).figures.IAE, 256.7 / 12, 0.01);
+    EXPECT_NEAR(*variant(*result, FeedforwardKind::rule).figures.IAE, 12.62, 0.01);
     EXPECT_NEAR(variant(*result, FeedforwardKind::inverse).figures.peak, 7.585 / 12, 1e-4);
 }
 
@@ -103,7 +103,7 @@ TEST(Feedforward, AGivenCompensatorIsOnlyJudged) {
     ASSERT_TRUE(result);
     ASSERT_EQ(result->variants.size(), 2u);
     EXPECT_EQ(result->variants[1].kind, FeedforwardKind::given);
-    EXPECT_NEAR(result->variants[1].figures.IAE, 9.133, 0.02);
+    EXPECT_NEAR(*result->variants[1].figures.IAE, 9.133, 0.02);
     EXPECT_EQ(result->variants[1].IAE_if_wrong.size(), 4u);
 }
 
@@ -128,7 +128,7 @@ TEST(Feedforward, PlantAndDisturbanceMayBothIntegrate) {
     const auto found = design_feedforward(problem, {});
     ASSERT_TRUE(found) << found.error().message;
     // The valve is earlier: the inverse, a gain of 1 after 1, is exact.
-    EXPECT_LT(found->variants.back().figures.IAE, 1e-6 * found->variants.front().figures.IAE);
+    EXPECT_LT(*found->variants.back().figures.IAE, 1e-6 * *found->variants.front().figures.IAE);
     FeedforwardProblem unstable = problem;
     unstable.plant = first_order(1, 5, 1);
     unstable.disturbance = first_order(-1, -15, 0);

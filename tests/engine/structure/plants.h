@@ -9,6 +9,7 @@
 #include "engine/controller/pid.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/structure/interaction_gains.h"
+#include "engine/structure/program/predictor_program.h"
 
 namespace tunewright::structure {
 
@@ -52,6 +53,14 @@ inline PlantMatrix ogunnaike_ray() {
 inline PlantMatrix polymerisation() {
     return {{first_order(22.89, 4.572, 0.2), first_order(-11.64, 1.807, 0.4)},
             {first_order(4.689, 2.174, 0.2), first_order(5.8, 1.801, 0.4)}};
+}
+
+/// The program of a predictor with the usual rules.
+inline Expected<code::Program> usual_program(const PredictorController& controller, double Ts,
+                                             const code::CodeOptions& u) {
+    const auto gains = predictor_pid(controller);
+    if (!gains) return gains.error();
+    return predictor_program(controller, {.gains = *gains, .Ts = Ts}, u);
 }
 
 class RandomNumbers {

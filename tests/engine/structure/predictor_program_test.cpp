@@ -42,7 +42,7 @@ TEST(PredictorProgram, ItIsTheLawWithWholeHistories) {
         const auto design = design_predictor(m, plant, {.kind = c.kind, .Ms = 1.9}, {});
         ASSERT_TRUE(design) << design.error().message;
         const PredictorController& controller = design->controller;
-        const auto program = predictor_program(controller, kPeriod, {.u_min = 12, .u_max = 31, .bias = 20, .y0 = 30});
+        const auto program = usual_program(controller, kPeriod, {.u_min = 12, .u_max = 31, .bias = 20, .y0 = 30});
         ASSERT_TRUE(program) << program.error().message;
         code::Interpreter machine(*program);
         const auto pid = predictor_pid(controller);
@@ -106,13 +106,13 @@ TEST(PredictorProgram, WhatCannotBeWrittenIsRefused) {
     controller.model = {.K = 2, .T = -15, .L = 1.7};
     controller.C = {{1, 1}, {1, 0}};
     controller.F = {{1}, {1}};
-    EXPECT_EQ(predictor_program(controller, kPeriod, {}).error().where, "controller/F");  // F must cancel the pole
+    EXPECT_EQ(usual_program(controller, kPeriod, {}).error().where, "controller/F");  // F must cancel the pole
     controller.model = {.K = 2, .T = 15, .L = 1.7};
-    EXPECT_TRUE(predictor_program(controller, kPeriod, {}));
+    EXPECT_TRUE(usual_program(controller, kPeriod, {}));
     controller.C = {{1, 1}, {1, 2, 1, 0}};
-    EXPECT_EQ(predictor_program(controller, kPeriod, {}).error().where, "controller/C");
+    EXPECT_EQ(usual_program(controller, kPeriod, {}).error().where, "controller/C");
     controller.C = {{1, 1}, {1, 0}};
-    EXPECT_EQ(predictor_program(controller, 1e-5, {}).error().where, "sample_time");
+    EXPECT_EQ(usual_program(controller, 1e-5, {}).error().where, "sample_time");
 }
 
 TEST(PredictorProgram, AFractionIsReadAsAPid) {

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/loop/loop.h"
+#include "engine/loop/peaks.h"
 #include "tests/engine/structure/plants.h"
 
 namespace tunewright::structure {
@@ -50,8 +52,8 @@ TEST(Predictor, LambdaOverTheDeadTimeDependsOnMsAlone) {
             EXPECT_NEAR(design->controller.lambda, row.lambda, 1e-6) << row.Ms;
             EXPECT_NEAR(Ms_of_lambda(design->controller.lambda), row.Ms, 1e-9) << row.Ms;
             EXPECT_NEAR(design->figures.Ms, row.Ms, 1e-8) << row.Ms;
-            EXPECT_NEAR(design->figures.load->IE, -2 * (1 + design->controller.lambda), 1e-5) << row.Ms;
-            EXPECT_NEAR(design->figures.setpoint->IAE, 1 + design->controller.lambda, 1e-4) << row.Ms;
+            EXPECT_NEAR(*design->figures.load->IE, -2 * (1 + design->controller.lambda), 1e-5) << row.Ms;
+            EXPECT_NEAR(*design->figures.setpoint->IAE, 1 + design->controller.lambda, 1e-4) << row.Ms;
         }
     }
 }
@@ -90,6 +92,18 @@ TEST(Predictor, AWantedWindowIsHeldAndSaysThatItLimitsTheDesign) {
     EXPECT_GE(std::min(*sharp->figures.dead_time_up, *sharp->figures.dead_time_down), 0.5 - 1e-4);
 }
 
+TEST(Predictor, ThePidIsComparedAtTheMsThatThePredictorHas) {
+    const LinearPlant plant = first_order(1, 1, 1);
+    for (const std::optional<double> window : {std::optional<double>(), std::optional(0.5)}) {
+        const auto found = design_predictor({}, plant, {.Ms = 1.9, .dead_time_error = window}, {});
+        ASSERT_TRUE(found && found->pid);
+        const auto loop = Loop::make(plant, to_parallel(*found->pid));
+        const auto peaks = stable_peaks(loop);
+        ASSERT_TRUE(peaks);
+        EXPECT_NEAR(peaks->S.value, found->figures.Ms, 1e-3) << "the limit is 1.9";
+    }
+}
+
 TEST(Predictor, MathWorksExampleIsRecomputed) {
     // After Ingimundarson and Hagglund (2001); figures of an independent program.
     const PredictorModel model{5.6, 40.2, 93.9};
@@ -98,8 +112,8 @@ TEST(Predictor, MathWorksExampleIsRecomputed) {
     const auto figures = judge_predictor(plant, controller);
     ASSERT_TRUE(figures && figures->stable);
     EXPECT_NEAR(figures->Ms, 1.938878292, 4e-5);
-    EXPECT_NEAR(figures->load->IAE, 595.8748432, 0.12);
-    EXPECT_NEAR(figures->setpoint->IAE, 106.40622200, 0.02);
+    EXPECT_NEAR(*figures->load->IAE, 595.8748432, 0.12);
+    EXPECT_NEAR(*figures->setpoint->IAE, 106.40622200, 0.02);
     EXPECT_NEAR(*figures->dead_time_up, 19.17083247, 0.04);
     EXPECT_NEAR(*figures->dead_time_down, 18.66564425, 0.04);
     controller.F = {{1}, {20, 1}};
@@ -137,9 +151,9 @@ TEST(Predictor, TheFilteredPredictorHasThePublishedIntegralAndOptima) {
         const auto design = design_predictor({.T = row.T}, first_order(1, row.T, 1),
                                              {.kind = PredictorKind::filtered_smith, .Ms = row.Ms}, {});
         ASSERT_TRUE(design);
-        EXPECT_LE(design->figures.load->IAE, 1.002 * row.IAE) << row.T << " " << row.Ms;
+        EXPECT_LE(*design->figures.load->IAE, 1.002 * row.IAE) << row.T << " " << row.Ms;
         EXPECT_LE(design->figures.Ms, row.Ms * (1 + 1e-5));
-        EXPECT_NEAR(design->figures.load->IE, -(1 + 2 * design->controller.Tf - design->controller.beta), 1e-4);
+        EXPECT_NEAR(*design->figures.load->IE, -(1 + 2 * design->controller.Tf - design->controller.beta), 1e-4);
     }
 }
 
@@ -152,7 +166,7 @@ TEST(Predictor, ThePredictivePiIsTheSmithPredictorWhoseLambdaIsTheLag) {
             design_predictor({.T = row.T}, first_order(1, row.T, 1), {.kind = PredictorKind::predictive_pi}, {});
         ASSERT_TRUE(design);
         EXPECT_NEAR(design->figures.Ms, row.Ms, 5e-4);
-        EXPECT_NEAR(design->figures.load->IE, -(1 + row.T), 1e-4);
+        EXPECT_NEAR(*design->figures.load->IE, -(1 + row.T), 1e-4);
     }
 }
 

@@ -90,7 +90,7 @@ Expected<code::Program> predictor(const PredictorModel& model, PredictorKind kin
         model.integrating ? transfer({model.K}, {1, 0}, model.L) : first_order(model.K, model.T, model.L);
     const auto design = design_predictor(model, plant, {.kind = kind, .Ms = Ms}, {});
     if (!design) return design.error();
-    return predictor_program(design->controller, kCallTime, {.u_min = 0, .u_max = 60, .bias = 20, .y0 = 30});
+    return usual_program(design->controller, kCallTime, {.u_min = 0, .u_max = 60, .bias = 20, .y0 = 30});
 }
 
 TEST(ProgramTexts, EveryLanguageComputesWhatTheInterpreterDoes) {

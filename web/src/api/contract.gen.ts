@@ -1690,6 +1690,7 @@ export type components = {
       gain: {
         inner_load: number | null;
         outer_load: number | null;
+        setpoint: number | null;
         why_null?: {
           [key: string]: string;
         };
@@ -1714,10 +1715,11 @@ export type components = {
         curves: {
           of: string;
           loop: string;
-          limit: number | null;
           values: number[];
+          limit?: number;
         }[];
       };
+      version: string;
       units?: components["schemas"]["Units"];
       request_hash?: string;
       why_null?: {
@@ -1742,6 +1744,9 @@ export type components = {
         outer_load: components["schemas"]["StructureStep"];
         setpoint: components["schemas"]["StructureStep"];
       };
+      why_null?: {
+        [key: string]: string;
+      };
     };
     CascadeBaseline: {
       stable: boolean;
@@ -1762,6 +1767,10 @@ export type components = {
     Conclusion: {
       code: "unstable" | "cascade-pays" | "cascade-gains-little" | "inner-too-slow" | "inner-peak-above" | "outer-peak-above" | "valve-peak-above" | "near-lowest-rate" | "level-above-room" | "flow-loop-unstable" | "flow-loop-too-slow" | "feedforward-exact" | "feedforward-pays" | "feedforward-gains-little" | "feedforward-worse-than-none" | "gain-alone-worse-than-none" | "peak-unavoidable" | "wrong-model-worse-than-none" | "pid-does-as-well" | "predictor-pays" | "limited-by-dead-time-error" | "narrow-dead-time-window" | "controller-unstable" | "pairing-impossible" | "other-pairing-better" | "hardly-interacting" | "mu-above" | "subsets-unstable" | "better-than-blt";
       figures: {
+        why_null?: {
+          [key: string]: string;
+        };
+      } & {
         [key: string]: number | null;
       };
     };
@@ -1856,10 +1865,11 @@ export type components = {
         curves: {
           of: string;
           loop: string;
-          limit: number | null;
           values: number[];
+          limit?: number;
         }[];
       };
+      version: string;
       units?: components["schemas"]["Units"];
       request_hash?: string;
     };
@@ -1872,6 +1882,9 @@ export type components = {
       largest_rate: number | null;
       rate_over_bound: number | null;
       overshoot_percent: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
     };
     FeedforwardRequest: {
       structure?: "feedforward";
@@ -1932,10 +1945,11 @@ export type components = {
         curves: {
           of: string;
           loop: string;
-          limit: number | null;
           values: number[];
+          limit?: number;
         }[];
       };
+      version: string;
       units?: components["schemas"]["Units"];
       request_hash?: string;
     };
@@ -1957,6 +1971,9 @@ export type components = {
         };
       };
       why_not?: string;
+      why_null?: {
+        [key: string]: string;
+      };
     };
     InteractionRequest: {
       structure?: "interaction";
@@ -2026,10 +2043,11 @@ export type components = {
         curves: {
           of: string;
           loop: string;
-          limit: number | null;
           values: number[];
+          limit?: number;
         }[];
       };
+      version: string;
       units?: components["schemas"]["Units"];
       request_hash?: string;
       why_null?: {
@@ -2059,6 +2077,9 @@ export type components = {
       IAE_setpoint: (number | null)[][];
       cost: number | null;
       why_not?: string;
+      why_null?: {
+        [key: string]: string;
+      };
     };
     PredictorRequest: {
       structure?: "predictor";
@@ -2122,10 +2143,11 @@ export type components = {
         curves: {
           of: string;
           loop: string;
-          limit: number | null;
           values: number[];
+          limit?: number;
         }[];
       };
+      version: string;
       units?: components["schemas"]["Units"];
       request_hash?: string;
       why_null?: {

@@ -102,7 +102,7 @@ export function structureSensitivities({ sensitivities }: StructureAnswer, units
   const first = omega.findIndex((_, index) => own.some(({ values }) => (values[index] ?? 0) >= bottom));
   const peaks = own.map(({ loop, values, limit }) => {
     const peak = Math.max(...values.map((value) => value ?? 0));
-    return `${nameOfLoop(loop)}: peak ${formatNumber(peak)}${limit === null ? "" : `, limit ${formatNumber(limit)}`}.`;
+    return `${nameOfLoop(loop)}: peak ${formatNumber(peak)}${limit === undefined ? "" : `, limit ${formatNumber(limit)}`}.`;
   });
   return {
     title: "Sensitivity |S| of each loop",

@@ -436,9 +436,10 @@ std::string structure_text(std::string_view answer) try {
         if (const Json::json_pointer place(one.pointer); value.contains(place))
             figures.row({one.name, number(value.at(place))});
     out += figures.text() + "\n";
-    const std::string label = words(at(value, "/units/time")), time = label.empty() ? "s" : label;
+    const std::string label = words(at(value, "/units/time"));
+    const StructureUnits units{label.empty() ? "s" : label, words(at(value, "/units/y"))};
     for (const Json& conclusion : value.value("verdict", Json::array()))
-        out += conclusion_sentence(conclusion, time) + "\n";
+        out += conclusion_sentence(conclusion, units) + "\n";
     return out;
 } catch (const Json::exception&) {
     return std::string(answer) + "\n";

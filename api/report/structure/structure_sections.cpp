@@ -23,7 +23,7 @@ JsonLocation place_of(const ReportInput& s, const std::string& pointer) {
 Html conclusions_of(const ReportInput& s) {
     std::vector<Html> sentences;
     for (const Json& conclusion : s.result.at("verdict").value())
-        sentences.emplace_back(conclusion_sentence(conclusion, s.time));
+        sentences.emplace_back(conclusion_sentence(conclusion, {s.time, s.y}));
     if (s.result.at("partial").value() == true)
         sentences.emplace_back("The search was stopped before its end; this is the best result until then.");
     return section("Verdict", list(sentences));
@@ -163,12 +163,12 @@ Html peaks_of(const ReportInput& s) {
         const JsonLocation curve = curves.at(i);
         const std::string of = text_at(curve.at("of")), loop = text_at(curve.at("loop"));
         if (of != text_at(curves.at(0).at("of"))) continue;
-        plot.traces.push_back({.name = loop,
+        plot.traces.push_back({.name = loop_title(loop),
                                .line = kSeriesLines[plot.traces.size() % kSeriesLines.size()],
                                .x = numbers_at(all.at("omega")),
                                .y = numbers_at(curve.at("values"))});
         if (curve.at("limit").value().is_number())
-            plot.limits.emplace_back("limit of " + loop, curve.at("limit").value().get<double>());
+            plot.limits.emplace_back("limit, " + loop_title(loop), curve.at("limit").value().get<double>());
     }
     const Html drawing = drawn(plot);
     return drawing.empty() ? Html() : section("Robustness", element("div", drawing, {{"class", "figures"}}));

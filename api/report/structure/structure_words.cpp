@@ -17,74 +17,115 @@ constexpr Word kStructures[] = {{"cascade", "Cascade"},
                                 {"interaction", "Interacting loops"},
                                 {"predictor", "Predictor"}};
 
-constexpr Word kSeries[] = {{"design", "Design"},
-                            {"single", "One loop"},
-                            {"baseline", "Today"},
-                            {"none", "Feedback alone"},
-                            {"static", "Static"},
-                            {"inverse", "Inverse"},
-                            {"guzman_hagglund", "Rule of 2011"},
-                            {"optimum", "Optimum"},
-                            {"given", "Given"},
+// The words of the page, web/src/words/structure.ts; a house test compares them.
+
+constexpr Word kSeries[] = {{"single", "single loop"},
+                            {"baseline", "today"},
+                            {"none", "no feedforward"},
+                            {"static", "gain alone"},
+                            {"guzman_hagglund", "Guzmán and Hägglund"},
+                            {"optimum", "least IAE"},
                             {"pid", "PID"},
-                            {"blt", "BLT"},
-                            {"detuned", "Detuned"},
-                            {"static_decoupler", "Static decoupler"},
-                            {"simplified_decoupler", "Simplified decoupler"}};
+                            {"program", "call by call, with limits"},
+                            {"blt", "BLT"}};
 
-constexpr Word kInputs[] = {{"setpoint", "Set point"},        {"inner_load", "Load at the valve"},
-                            {"outer_load", "Outer load"},     {"disturbance", "Disturbance"},
-                            {"inflow", "Step of the inflow"}, {"load", "Load"}};
+constexpr Word kInputs[] = {{"setpoint", "Set-point step"},
+                            {"inner_load", "Load at the valve"},
+                            {"outer_load", "Load on the outer plant"},
+                            {"disturbance", "Step of the disturbance"},
+                            {"inflow", "Largest step of the inflow"},
+                            {"load", "Load at the plant input"}};
 
-/// Sentences with {names} of figures, and {time} for the unit after one.
+constexpr Word kLoops[] = {
+    {"inner", "inner loop"}, {"outer", "outer loop"}, {"valve", "at the valve"}, {"mu", "mu of all loops"}};
+
+/// Sentences with {names} of figures; {wrong%} is one in percent, and { y} a unit after a blank. A sentence with a
+/// figure that is not known is replaced by the reason.
 constexpr Word kConclusions[] = {
-    {"unstable", "The loops are not stable together."},
+    {"unstable", "The loops are not stable together, so there are no other figures."},
     {"cascade-pays",
-     "The cascade pays: after a load at the valve the IAE is {gain_inner} times less than with one loop."},
+     "The cascade pays. A single loop has {gain_inner} times its IAE after a load at the valve, {gain_outer} times "
+     "after a load on the outer plant, and {gain_setpoint} times after a set-point step."},
     {"cascade-gains-little",
-     "The cascade gains little: after a load at the valve the IAE is {gain_inner} times less than with one loop."},
+     "The cascade gains little. A single loop has {gain_inner} times its IAE after a load at the valve, {gain_outer} "
+     "times after a load on the outer plant, and {gain_setpoint} times after a set-point step."},
     {"inner-too-slow",
-     "The inner loop is only {speed_ratio} times as fast as the outer one; {at_least} times is the least for a "
-     "cascade."},
-    {"inner-peak-above", "Ms of the inner loop is {Ms}, above its limit {limit}."},
-    {"outer-peak-above", "Ms of the outer loop is {Ms}, above its limit {limit}."},
-    {"valve-peak-above", "Ms at the valve is {Ms}, above its limit {limit}."},
+     "The inner loop is only {speed_ratio} times as fast as the outer one; it should be at least {at_least} times as "
+     "fast."},
+    {"inner-peak-above", "Ms of the inner loop is {Ms}, above its limit of {limit}."},
+    {"outer-peak-above", "Ms of the outer loop is {Ms}, above its limit of {limit}."},
+    {"valve-peak-above", "Ms at the valve is {Ms}, above its limit of {limit}."},
     {"near-lowest-rate",
-     "The outflow's largest rate is {rate_over_bound} times the least that any controller reaches."},
-    {"level-above-room", "The level rises to {highest}, above the allowed {allowed}."},
-    {"flow-loop-unstable", "With this flow loop the level is not stable."},
+     "The outflow moves about as slowly as it can. Its largest rate is {rate_over_bound} times the lowest that any "
+     "controller can reach with this room for the level."},
+    {"level-above-room", "The level rises by {highest}{ y}, above the allowed {allowed}{ y}."},
     {"flow-loop-too-slow",
-     "With the flow loop Ms is {Ms}, above {limit}: make the flow loop faster or allow more room."},
-    {"feedforward-exact", "With the exact model the disturbance does not move the measurement."},
-    {"feedforward-pays", "Feedforward pays: the IAE is {gain} times less than with feedback alone."},
-    {"feedforward-gains-little", "Feedforward gains little: the IAE is {gain} times less than with feedback alone."},
-    {"feedforward-worse-than-none", "Feedforward does harm: without it the IAE is {gain} times as large."},
-    {"gain-alone-worse-than-none", "A gain alone is worse than no feedforward: IAE {IAE}, without it {IAE_none}."},
+     "The flow loop is slow for this level loop: with it Ms is {Ms}, above {limit}. Make it faster, or allow the level "
+     "more room."},
+    {"flow-loop-unstable", "With this flow loop the level is not stable."},
+    {"feedforward-exact", "The compensator is exact: the disturbance does not move y."},
+    {"feedforward-pays", "Feedforward pays. Without it the IAE after the disturbance is {gain} times as large."},
+    {"feedforward-worse-than-none",
+     "Feedforward does harm. Without it the IAE after the disturbance is {gain} times as large."},
+    {"feedforward-gains-little",
+     "Feedforward gains little. Without it the IAE after the disturbance is {gain} times as large."},
+    {"gain-alone-worse-than-none",
+     "A gain alone would be worse than no feedforward: its IAE is {IAE}, without feedforward {IAE_none}."},
     {"peak-unavoidable",
-     "The valve acts later than the disturbance: no feedforward keeps the error below {peak_bound}; without one it "
-     "reaches {peak}."},
+     "The valve acts later than the disturbance, so y reaches {peak_bound}{ y} with any compensator; without "
+     "feedforward it reaches {peak}{ y}."},
     {"wrong-model-worse-than-none",
-     "If a gain or a dead time is wrong by the share {wrong}, the IAE is {IAE}, more than {IAE_none} without "
-     "feedforward."},
-    {"pid-does-as-well", "A PID of the same Ms does as well: IAE {IAE_pid}, with the predictor {IAE}."},
-    {"predictor-pays", "The predictor pays: IAE {IAE}, with a PID of the same Ms {IAE_pid}."},
-    {"limited-by-dead-time-error", "The allowed error of the dead time, not Ms, limits the design."},
+     "If a gain or dead time is wrong by {wrong%} %, the IAE can be {IAE}, above the {IAE_none} without feedforward."},
+    {"pid-does-as-well",
+     "A PID with the same Ms does as well. After a load its IAE is {IAE_pid}, that of the predictor {IAE}."},
+    {"predictor-pays", "The predictor pays. After a load its IAE is {IAE}, that of a PID with the same Ms {IAE_pid}."},
+    {"limited-by-dead-time-error", "The error that the dead time may have limits this design, not Ms, which is {Ms}."},
     {"narrow-dead-time-window",
-     "An error of the dead time of {window}{time} makes the loop unstable; below {at_least}{time} it is hardly "
-     "usable."},
-    {"controller-unstable", "The controller by itself is not stable: it must not run without its feedback."},
-    {"pairing-impossible", "This pairing cannot be stable with integral action and one loop in manual."},
-    {"other-pairing-better", "Another pairing interacts less."},
-    {"hardly-interacting", "The loops hardly interact: tune them one by one."},
-    {"mu-above", "The structured peak mu is {mu}, above its limit {limit}."},
-    {"subsets-unstable", "{count} sets of loops are not stable while the others are in manual."},
-    {"better-than-blt", "The cost is {gain} times less than with Luyben's tuning (BLT)."},
-    {"decoupler-helps", "A decoupler lowers the cost {gain} times at the same limit."}};
+     "The loop is stable only while the dead time is known to {window}{ time}; {at_least}{ time} are advisable."},
+    {"controller-unstable",
+     "The controller by itself is not stable. It must not run without its feedback, as with the valve at a limit."},
+    {"pairing-impossible",
+     "This pairing cannot be used with integral action. Its lowest relative gain is {relative_gain}. Its Niederlinski "
+     "index is {niederlinski}."},
+    {"other-pairing-better",
+     "Another pairing is better: its lowest relative gain is {other}, that of this one {relative_gain}."},
+    {"hardly-interacting",
+     "The loops hardly disturb each other and can be tuned one by one: all relative gains are near 1."},
+    {"mu-above", "The peak mu of all loops is {mu}, above its limit of {limit}."},
+    {"subsets-unstable", "Some loops are not stable while others are in manual: {count} sets of them."},
+    {"better-than-blt", "Luyben's BLT tuning has {gain} times the weighted IAE after loads."},
+    {"decoupler-helps",
+     "Without a decoupler the weighted IAE after loads is {gain} times as large at the same limit."}};
 
 template <std::size_t N>
 std::string word_for(const Word (&words)[N], std::string_view code) {
     const auto* found = std::ranges::find(words, code, &Word::first);
-    return found == std::end(words) ? std::string(code) : found->second;
+    if (found != std::end(words)) return found->second;
+    std::string out(code);
+    std::ranges::replace(out, '_', ' ');
+    return out;
+}
+
+/// A sentence with its figures and units in their places.
+std::string filled(std::string_view form, const Json& figures, const StructureUnits& units) {
+    std::string out;
+    for (std::size_t at = 0; at < form.size();) {
+        const std::size_t begin = form.find('{', at), end = form.find('}', begin);
+        out += form.substr(at, begin - at);
+        if (end == form.npos) break;
+        std::string name(form.substr(begin + 1, end - begin - 1));
+        at = end + 1;
+        if (name.starts_with(' ')) {
+            const std::string& unit = name == " y" ? units.y : units.time;
+            out += unit.empty() ? "" : " " + unit;
+            continue;
+        }
+        const bool percent = name.ends_with('%');
+        if (percent) name.pop_back();
+        const Json value = figures.value(name, Json());
+        out += value.is_number() ? number_text((percent ? 100 : 1) * value.get<double>(), 3) : "unknown";
+    }
+    return out;
 }
 
 std::size_t length_at(const Json& result, const char* pointer) {
@@ -109,11 +150,11 @@ const Figures& cascade_figures() {
                                  {"Limit of Ms at the valve", "/Ms_valve_limit", ""},
                                  {"The dead time may rise by", "/outer/robustness/dead_time_up", "time"},
                                  {"IAE after a load at the valve", "/performance/inner_load/IAE", "y time"},
-                                 {"the same with one loop", "/single/performance/inner_load/IAE", "y time"},
-                                 {"IAE after an outer load", "/performance/outer_load/IAE", "y time"},
-                                 {"the same with one loop", "/single/performance/outer_load/IAE", "y time"},
+                                 {"the same with a single loop", "/single/performance/inner_load/IAE", "y time"},
+                                 {"IAE after a load on the outer plant", "/performance/outer_load/IAE", "y time"},
+                                 {"the same with a single loop", "/single/performance/outer_load/IAE", "y time"},
                                  {"IAE after a set-point step", "/performance/setpoint/IAE", "y time"},
-                                 {"the same with one loop", "/single/performance/setpoint/IAE", "y time"},
+                                 {"the same with a single loop", "/single/performance/setpoint/IAE", "y time"},
                                  {"Speed of the inner over the outer loop", "/speed_ratio", ""}};
     return figures;
 }
@@ -170,31 +211,38 @@ Figures interaction_figures(const Json& result) {
 
 std::string structure_title(std::string_view structure) { return word_for(kStructures, structure); }
 
-std::string conclusion_sentence(const Json& conclusion, const std::string& time) {
-    std::string out = word_for(kConclusions, conclusion.value("code", ""));
-    const auto put = [&](const std::string& name, const std::string& text) {
-        const std::string place = "{" + name + "}";
-        for (std::size_t at = out.find(place); at != out.npos; at = out.find(place))
-            out.replace(at, place.size(), text);
-    };
+std::string conclusion_sentence(const Json& conclusion, const StructureUnits& units) {
     const Json figures = conclusion.value("figures", Json::object());
-    for (const auto& [name, value] : figures.items())
-        put(name, value.is_number() ? number_text(value.get<double>(), 3) : "unknown");
-    put("time", time.empty() ? "" : " " + time);
+    const Json reasons = figures.value("why_null", Json::object());
+    const std::string all = word_for(kConclusions, conclusion.value("code", ""));
+    std::vector<std::string> parts;
+    for (std::size_t at = 0; at < all.size();) {
+        const std::size_t next = std::min(all.find(". ", at), all.size() - 1);
+        std::string part = all.substr(at, next + 1 - at);
+        at = next + 2;
+        std::string why;
+        for (const auto& [name, reason] : reasons.items())
+            if (why.empty() && part.find("{" + name + "}") != part.npos) why = reason.get<std::string>();
+        part = why.empty() ? filled(part, figures, units) : why;
+        if (std::ranges::find(parts, part) == parts.end()) parts.push_back(std::move(part));
+    }
+    std::string out;
+    for (const std::string& part : parts) out += (out.empty() ? "" : " ") + part;
     return out;
 }
 
 std::vector<StructureController> structure_controllers(const Json& result) {
     const std::string structure = structure_of(result);
-    if (structure == "cascade") return {{"Inner", "/inner/controller"}, {"Outer", "/outer/controller"}};
-    if (structure == "feedforward") return {{"Feedback", "/feedback"}};
-    if (structure == "predictor") return {{"PID in its place", "/pid"}};
+    if (structure == "cascade")
+        return {{"Inner controller", "/inner/controller"}, {"Outer controller", "/outer/controller"}};
+    if (structure == "feedforward") return {{"Feedback controller", "/feedback"}};
+    if (structure == "predictor") return {{"PID for comparison", "/pid"}};
     std::vector<StructureController> out;
     const std::size_t inputs = length_at(result, "/pairing");
     for (std::size_t i = 0; structure == "interaction" && i < length_at(result, "/controllers"); ++i) {
         const std::string number = std::to_string(i + 1);
         const std::string pair = i < inputs ? ": y" + number + " by u" + result["pairing"][i].dump() : "";
-        out.push_back({"Loop " + number + pair, "/controllers/" + std::to_string(i)});
+        out.push_back({"Controller " + number + pair, "/controllers/" + std::to_string(i)});
     }
     return out;
 }
@@ -209,6 +257,8 @@ std::vector<StructureFigure> structure_figures(const Json& result) {
 }
 
 std::string series_title(std::string_view of) { return word_for(kSeries, of); }
+
+std::string loop_title(std::string_view loop) { return word_for(kLoops, loop); }
 
 std::string input_title(std::string_view input) {
     const std::size_t number = input.find_first_of("123456789");

@@ -12,10 +12,15 @@ namespace tunewright::api {
 /// "Cascade" for "cascade"; an unknown name unchanged.
 std::string structure_title(std::string_view structure);
 
-/// {"code", "figures"} as a sentence, with the label of the unit of time; an unknown code unchanged.
-std::string conclusion_sentence(const Json& conclusion, const std::string& time);
+/// Labels of units; empty: none.
+struct StructureUnits {
+    std::string time, y;
+};
 
-/// A controller of the answer by its place, with its name: "Outer", "Loop 1: y1 by u2".
+/// {"code", "figures"} as sentences; an unknown code unchanged.
+std::string conclusion_sentence(const Json& conclusion, const StructureUnits& units);
+
+/// A controller of the answer by its place, with its name: "Outer controller", "Controller 1: y1 by u2".
 struct StructureController {
     std::string name, pointer;
 };
@@ -29,9 +34,11 @@ struct StructureFigure {
 };
 std::vector<StructureFigure> structure_figures(const Json& result);
 
-/// "One loop" for "single": whose series they are. An unknown name unchanged.
+/// "single loop" for "single": whose series they are. An unknown name with blanks.
 std::string series_title(std::string_view of);
-/// "Load at the valve" for "inner_load"; "Load 2" for "load_2".
+/// "at the valve" for "valve": where a loop is broken.
+std::string loop_title(std::string_view loop);
+/// "Load at the valve" for "inner_load"; "Load at the plant input 2" for "load_2".
 std::string input_title(std::string_view input);
 
 }  // namespace tunewright::api

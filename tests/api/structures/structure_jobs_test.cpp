@@ -182,11 +182,20 @@ TEST(StructureJobs, NoPointsMeanNoSeries) {
 TEST(StructureJobs, EveryConclusionHasASentenceWithItsFigures) {
     for (const auto code : structure::all_conclusion_codes()) {
         const Json conclusion{{"code", structure::to_string(code)}, {"figures", Json::object()}};
-        EXPECT_NE(conclusion_sentence(conclusion, "s"), structure::to_string(code));
+        EXPECT_NE(conclusion_sentence(conclusion, {"s", ""}), structure::to_string(code));
     }
     for (const StructureCase& one : structure_cases())
         for (const Json& conclusion : called(one)["verdict"])
-            EXPECT_THAT(conclusion_sentence(conclusion, "s"), Not(HasSubstr("{"))) << conclusion;
+            EXPECT_THAT(conclusion_sentence(conclusion, {"s", ""}), Not(HasSubstr("{"))) << conclusion;
+}
+
+TEST(StructureJobs, AnUnknownFigureGivesItsReasonInItsSentence) {
+    const Json figures{{"gain", nullptr}, {"why_null", {{"gain", "It is infinite."}}}};
+    EXPECT_EQ(conclusion_sentence({{"code", "feedforward-pays"}, {"figures", figures}}, {}),
+              "Feedforward pays. It is infinite.");
+    EXPECT_EQ(conclusion_sentence({{"code", "level-above-room"}, {"figures", {{"highest", 2}, {"allowed", 1.8}}}},
+                                  {"min", "m"}),
+              "The level rises by 2 m, above the allowed 1.8 m.");
 }
 
 TEST(StructureJobs, AReportATableAndAProgramInEachLanguage) {
@@ -224,7 +233,7 @@ TEST(StructureReports, TimesOfAConclusionHaveTheirUnit) {
     one.request = {{"plant", "e^(-8s)/(s+1)"},
                    {"units", {{"time", "min"}}},
                    {"controller", {{"C", {{"num", {1.8, 4}}, {"den", {1, 0}}}}, {"F", {{"num", {1}}, {"den", {1}}}}}}};
-    const char* limit = " min makes the loop unstable; below 2 min it is hardly usable.";  // a quarter of the dead time
+    const char* limit = " min; 2 min are advisable.";  // a quarter of the dead time
     EXPECT_THAT(report_of(one), HasSubstr(limit));
     EXPECT_THAT(structure_text(called(one).dump()), HasSubstr(limit));
 }
@@ -238,15 +247,15 @@ TEST(StructureReports, FiguresAreThoseOfTheChosenPairing) {
     for (const StructureFigure& figure : structure_figures(answer))
         if (figure.name == "Relative gain of loop 1") gain = answer.at(Json::json_pointer(figure.pointer));
     EXPECT_NEAR(gain, 1 - 2.009, 1e-3);  // the rows of the relative gains have the sum 1
-    EXPECT_THAT(report_of(one), HasSubstr("Loop 1: y1 by u2"));
-    EXPECT_THAT(structure_text(answer.dump()), HasSubstr("Loop 2: y2 by u1"));
+    EXPECT_THAT(report_of(one), HasSubstr("Controller 1: y1 by u2"));
+    EXPECT_THAT(structure_text(answer.dump()), HasSubstr("Controller 2: y2 by u1"));
 }
 
 TEST(StructureReports, FiguresHaveTheirUnitsAndNullsTheirReasons) {
     StructureCase cascade = structure_cases()[0];
-    EXPECT_THAT(report_of(cascade), HasSubstr("IAE after an outer load (s)"));
+    EXPECT_THAT(report_of(cascade), HasSubstr("IAE after a load on the outer plant (s)"));
     cascade.request["units"] = {{"time", "min"}, {"y", "degC"}};
-    EXPECT_THAT(report_of(cascade), HasSubstr("IAE after an outer load (°C min)"));
+    EXPECT_THAT(report_of(cascade), HasSubstr("IAE after a load on the outer plant (°C min)"));
 
     StructureCase level = structure_cases()[1];
     level.request["aim"] = "no_outflow_overshoot";
@@ -454,7 +463,10 @@ Json record_of(const std::vector<double>& u, const std::vector<double>& d, const
 }
 
 TEST(StructureRecords, OneRecordGivesBothPlantsOfACascade) {
-    const auto u = steps_at({{100, 5}, {700, -3}, {1200, 2}}), y2 = lagged(u, 2, 4, 1), y1 = lagged(y2, 1.5, 30, 8);
+    const auto u = steps_at({{100, 5}, {700, -3}, {1200, 2}}), y2 = lagged(u, 2, 4, 1);
+    std::vector<double> moving = y2;  // between its samples
+    for (std::size_t k = 0; k + 1 < moving.size(); ++k) moving[k] = (y2[k] + y2[k + 1]) / 2;
+    const auto y1 = lagged(moving, 1.5, 30, 8);
     const Json request{{"record", record_of(u, y2, y1)}};
     const Answer answer = cascade_call(request.dump(), {});
     ASSERT_EQ(answer.status, 200) << answer.body.substr(0, 300);

@@ -110,6 +110,18 @@ test("a run call by call is asked for by its sample time", () => {
   assert.equal(question.request["sampled"], undefined);
 });
 
+test("parts without a field are kept as long as the part that they belong to is asked for", () => {
+  const sampled = { sample_time: 0.5, u_max: 2, bias: 20, rules: { integral: "backward" }, steps: { setpoint: 5, other: 1 } };
+  const predictor = { plant: "2 e^(-9s)/(4s+1)", kind: "smith", sampled };
+  assert.deepEqual(again("predictor", predictor).question.request, predictor);
+  assert.equal(readQuestion("predictor", { ...textsOf("predictor", predictor), "sampled.sample_time": "" }).question.request["sampled"], undefined);
+
+  const cascade = { inner: { plant: "1/(s+1)", tune: { method: "robust", controller: "PI" } }, outer: { plant: "1/(9s+1)", tune: { controller: "PI" } }, arrangement: "series", search: "sequential" };
+  assert.deepEqual(again("cascade", cascade).question.request, cascade);
+  const given = { ...textsOf("cascade", cascade), "inner.tune.controller": "given", "inner.controller": "Kp 1, Ti 2" };
+  assert.deepEqual(readQuestion("cascade", given).question.request["inner"], { plant: "1/(s+1)", controller: { Kp: 1, Ti: 2 } });
+});
+
 test("plants that are objects are left to the service to write", () => {
   const fopdt = { type: "fopdt", K: 1, T: 2, L: 3 };
   const request = { plant: fopdt, kind: "smith", Ms: 1.6 };
@@ -117,7 +129,7 @@ test("plants that are objects are left to the service to write", () => {
 });
 
 test("every conclusion of the contract has a sentence without a gap", () => {
-  const figures = { gain: 3, gain_inner: 9.7, gain_outer: 0.8, Ms: 1.5, limit: 1.4, speed_ratio: 2, at_least: 3, rate_over_bound: 1.04, highest: 2, allowed: 1.8, IAE: 4, IAE_none: 3, peak: 0.7, peak_bound: 0.6, wrong: 0.2, IAE_pid: 5, window: 2, relative_gain: -1, niederlinski: -1, other: 2, mu: 1.9, count: 1 };
+  const figures = { gain: 3, gain_inner: 9.7, gain_outer: 0.8, gain_setpoint: 0.9, Ms: 1.5, limit: 1.4, speed_ratio: 2, at_least: 3, rate_over_bound: 1.04, highest: 2, allowed: 1.8, IAE: 4, IAE_none: 3, peak: 0.7, peak_bound: 0.6, wrong: 0.2, IAE_pid: 5, window: 2, relative_gain: -1, niederlinski: -1, other: 2, mu: 1.9, count: 1 };
   const codes = "unstable cascade-pays cascade-gains-little inner-too-slow inner-peak-above outer-peak-above valve-peak-above near-lowest-rate level-above-room flow-loop-unstable flow-loop-too-slow feedforward-exact feedforward-pays feedforward-gains-little feedforward-worse-than-none gain-alone-worse-than-none peak-unavoidable wrong-model-worse-than-none pid-does-as-well predictor-pays limited-by-dead-time-error narrow-dead-time-window controller-unstable pairing-impossible other-pairing-better hardly-interacting mu-above subsets-unstable better-than-blt decoupler-helps".split(" ");
   for (const code of codes) {
     const { text } = conclusionWords({ code, figures } as never, units);
@@ -125,11 +137,19 @@ test("every conclusion of the contract has a sentence without a gap", () => {
     assert.doesNotMatch(text, /–|NaN|undefined|[{}]/, code);
     assert.notEqual(text, `${code.replaceAll("-", " ")}.`);
   }
-  assert.match(conclusionWords({ code: "cascade-pays", figures } as never, units).text, /has 9\.70 times its IAE after a load at the valve, and 0\.800 times after/);
+  assert.match(conclusionWords({ code: "cascade-pays", figures } as never, units).text, /has 9\.70 times its IAE after a load at the valve, 0\.800 times after .*, and 0\.900 times after a set-point step\.$/);
   assert.match(conclusionWords({ code: "level-above-room", figures } as never, units).text, /by 2\.00 °C, above the allowed 1\.80 °C\.$/);
   assert.match(conclusionWords({ code: "level-above-room", figures } as never, unitNames(undefined)).text, /by 2\.00, above the allowed 1\.80\.$/);
   assert.match(conclusionWords({ code: "wrong-model-worse-than-none", figures } as never, units).text, /wrong by 20 %/);
   assert.deepEqual(conclusionWords({ code: "brand-new", figures: {} } as never, units), { code: "brand-new", level: "note", text: "brand new." });
+});
+
+test("a figure that is not known gives its reason in place of the sentence about it", () => {
+  const why = "The measurement comes to rest away from its target.";
+  const figures = { gain: null, why_null: { gain: why } };
+  assert.equal(conclusionWords({ code: "feedforward-pays", figures } as never, units).text, `Feedforward pays. ${why}`);
+  const both = { gain_inner: null, gain_outer: 2, gain_setpoint: null, why_null: { gain_inner: why, gain_setpoint: why } };
+  assert.equal(conclusionWords({ code: "cascade-gains-little", figures: both } as never, units).text, `The cascade gains little. ${why}`);
 });
 
 test("the table has the figures next to the single loop's, and each missing one its reason", () => {
@@ -189,8 +209,8 @@ test("the run call by call is drawn with the design, with a step of another size
 });
 
 test("peaks: a curve for each loop and a line for each limit", () => {
-  const curve = (of: string, loop: string, limit: number | null) => ({ of, loop, limit, values: [0.1, 1.4, 1] });
-  const frame = structureSensitivities({ ...cascade, sensitivities: { omega: [0.1, 1, 10], curves: [curve("design", "inner", 1.4), curve("design", "outer", 1.4), curve("design", "valve", 1.6), curve("single", "outer", null)] } }, units)!;
+  const curve = (of: string, loop: string, limit?: number) => ({ of, loop, ...(limit ? { limit } : {}), values: [0.1, 1.4, 1] });
+  const frame = structureSensitivities({ ...cascade, sensitivities: { omega: [0.1, 1, 10], curves: [curve("design", "inner", 1.4), curve("design", "outer", 1.4), curve("design", "valve", 1.6), curve("single", "outer")] } }, units)!;
   assert.deepEqual(frame.panes[0]!.traces.map(({ name, thin }) => [name, thin]), [["inner loop", false], ["outer loop", false], ["at the valve", false], ["single loop, outer loop", true]]);
   assert.deepEqual(frame.panes[0]!.marks!.map((mark) => mark.kind === "level" && mark.value), [1.4, 1.6]);
   assert.equal(structureSensitivities(cascade, units), null);

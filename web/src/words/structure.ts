@@ -4,11 +4,14 @@ import type { Controller, Finding } from "../api/types.ts";
 import { formatNumber, formatSetting, formatShare, plainSetting, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
-/** Sentences with {names} of figures; {wrong%} is one in percent, and { y} a unit after a blank. */
+/**
+ * Sentences with {names} of figures; {wrong%} is one in percent, and { y} a unit after a blank. A sentence with a figure
+ * that is not known is replaced by the reason. The report has the same words: api/report/structure/structure_words.cpp.
+ */
 const SENTENCES: Record<string, readonly [Finding["level"], string]> = {
   unstable: ["bad", "The loops are not stable together, so there are no other figures."],
-  "cascade-pays": ["good", "The cascade pays. A single loop has {gain_inner} times its IAE after a load at the valve, and {gain_outer} times after a load on the outer plant."],
-  "cascade-gains-little": ["warning", "The cascade gains little. A single loop has {gain_inner} times its IAE after a load at the valve, and {gain_outer} times after a load on the outer plant."],
+  "cascade-pays": ["good", "The cascade pays. A single loop has {gain_inner} times its IAE after a load at the valve, {gain_outer} times after a load on the outer plant, and {gain_setpoint} times after a set-point step."],
+  "cascade-gains-little": ["warning", "The cascade gains little. A single loop has {gain_inner} times its IAE after a load at the valve, {gain_outer} times after a load on the outer plant, and {gain_setpoint} times after a set-point step."],
   "inner-too-slow": ["warning", "The inner loop is only {speed_ratio} times as fast as the outer one; it should be at least {at_least} times as fast."],
   "inner-peak-above": ["bad", "Ms of the inner loop is {Ms}, above its limit of {limit}."],
   "outer-peak-above": ["bad", "Ms of the outer loop is {Ms}, above its limit of {limit}."],
@@ -29,7 +32,7 @@ const SENTENCES: Record<string, readonly [Finding["level"], string]> = {
   "limited-by-dead-time-error": ["note", "The error that the dead time may have limits this design, not Ms, which is {Ms}."],
   "narrow-dead-time-window": ["bad", "The loop is stable only while the dead time is known to {window}{ time}; {at_least}{ time} are advisable."],
   "controller-unstable": ["warning", "The controller by itself is not stable. It must not run without its feedback, as with the valve at a limit."],
-  "pairing-impossible": ["bad", "This pairing cannot be used with integral action: its lowest relative gain is {relative_gain}, its Niederlinski index {niederlinski}."],
+  "pairing-impossible": ["bad", "This pairing cannot be used with integral action. Its lowest relative gain is {relative_gain}. Its Niederlinski index is {niederlinski}."],
   "other-pairing-better": ["warning", "Another pairing is better: its lowest relative gain is {other}, that of this one {relative_gain}."],
   "hardly-interacting": ["good", "The loops hardly disturb each other and can be tuned one by one: all relative gains are near 1."],
   "mu-above": ["bad", "The peak mu of all loops is {mu}, above its limit of {limit}."],
@@ -47,11 +50,17 @@ export interface StructureFinding {
 /** A code that is newer than the page is shown as it is. */
 export function conclusionWords({ code, figures }: Conclusion, units: UnitNames): StructureFinding {
   const [level, template] = SENTENCES[code] ?? (["note", `${code.replaceAll("-", " ")}.`] as const);
-  const text = template.replace(/\{( ?)(\w+)(%?)\}/g, (_, blank: string, name: string, percent: string) => {
-    if (blank) return units[name as keyof UnitNames] && ` ${units[name as keyof UnitNames]}`;
-    return percent ? formatShare(figures[name] ?? NaN) : formatNumber(figures[name]);
+  const { why_null = {}, ...known } = figures as Record<string, number | null> & { why_null?: Record<string, string> };
+  const filled = (form: string): string =>
+    form.replace(/\{( ?)(\w+)(%?)\}/g, (_, blank: string, name: string, percent: string) => {
+      if (blank) return units[name as keyof UnitNames] && ` ${units[name as keyof UnitNames]}`;
+      return percent ? formatShare(known[name] ?? NaN) : formatNumber(known[name]);
+    });
+  const sentences = template.split(/(?<=\.) /).map((form) => {
+    const unknown = Object.keys(why_null).find((name) => form.includes(`{${name}}`));
+    return unknown ? why_null[unknown]! : filled(form);
   });
-  return { code, level, text };
+  return { code, level, text: [...new Set(sentences)].join(" ") };
 }
 
 const OF: Record<string, string> = {
@@ -86,7 +95,12 @@ export function nameOfInput(input: string): string {
   return [INPUTS[input] ?? INPUTS[kind] ?? kind.replaceAll("_", " "), number].filter(Boolean).join(" ");
 }
 
-const LOOPS: Record<string, string> = { inner: "inner loop", outer: "outer loop", valve: "at the valve", loop: "loop", mu: "mu of all loops", pid: "PID for comparison" };
+const LOOPS: Record<string, string> = {
+  inner: "inner loop",
+  outer: "outer loop",
+  valve: "at the valve",
+  mu: "mu of all loops",
+};
 
 export const nameOfLoop = (loop: string): string => LOOPS[loop] ?? loop.replace("_", " ");
 

@@ -3,10 +3,10 @@ import type { StructureId, StructureQuestion, StructureRequest } from "../api/st
 import type { FieldError, Plant } from "../api/types.ts";
 import { parseNumber, parseNumbers } from "../form/number.ts";
 import { exactText } from "../words/numbers.ts";
-import { fieldsOf, isActive, STRUCTURE_SPECS } from "./structures.ts";
+import { fieldsOf, isActive, SAMPLED, STRUCTURE_SPECS } from "./structures.ts";
 import type { FieldSpec, Texts } from "./structures.ts";
 
-/** The member for parts of a request without a field. */
+/** The text for parts of a request without a field: their values by their paths. */
 const REST = "rest";
 
 export const pointerOf = (key: string): string => `/${key.replaceAll(".", "/")}`;
@@ -105,10 +105,19 @@ function parseField(spec: FieldSpec, text: string): Read {
 const isMember = ({ key, kind }: FieldSpec, text: string): boolean =>
   kind !== "choice" || !(text === "given" || text === "design" || text === "" || key === "size");
 
+/** The fields next to a path leave that part out of the request: settings are given, or there is no run. */
+function isLeftOut(path: string, specs: readonly FieldSpec[], texts: Texts): boolean {
+  const part = path.slice(0, path.lastIndexOf(".") + 1);
+  if (part.startsWith(SAMPLED) && !texts[`${SAMPLED}sample_time`]?.trim()) return true;
+  return part !== "" && specs.some(({ key }) => key.startsWith(part) && texts[key] === "given");
+}
+
 export function readQuestion(id: StructureId, texts: Texts): { question: StructureQuestion; errors: FieldError[] } {
   const errors: FieldError[] = [];
-  const request: StructureRequest = { ...STRUCTURE_SPECS[id].fixed, ...(JSON.parse(texts[REST] || "{}") as StructureRequest) };
-  for (const spec of fieldsOf(id, texts)) {
+  const specs = fieldsOf(id, texts);
+  const request: StructureRequest = { ...STRUCTURE_SPECS[id].fixed };
+  for (const [path, value] of Object.entries(JSON.parse(texts[REST] || "{}") as object)) if (!isLeftOut(path, specs, texts)) set(request, path, value);
+  for (const spec of specs) {
     const text = texts[spec.key] ?? "";
     if (!isActive(spec, texts) || !isMember(spec, text) || (spec.optional && text.trim() === "")) continue;
     const read = parseField(spec, text);
@@ -144,15 +153,22 @@ function writeField(spec: FieldSpec, request: StructureRequest): string {
 /** Terms on which a job is run, and what the page itself adds. */
 const NOT_TYPED = ["structure", "evaluate", "implement", "notify", "priority", "timeout_s", "compare"];
 
+/** The parts that no field shows, with their paths. A list that fields show has none. */
+const partsWithoutField = (part: object, specs: readonly FieldSpec[], before = ""): [path: string, value: unknown][] =>
+  Object.entries(part).flatMap(([name, value]): [string, unknown][] => {
+    const path = before + name;
+    if (specs.some(({ key }) => key === path)) return [];
+    if (!specs.some(({ key }) => key.startsWith(`${path}.`))) return [[path, value]];
+    return typeof value === "object" && value !== null && !Array.isArray(value) ? partsWithoutField(value, specs, `${path}.`) : [];
+  });
+
 /** The texts that show a request. Plants that are objects are left out: see `objectPlants`. */
 export function textsOf(id: StructureId, request: StructureRequest): Texts {
   const size = Array.isArray(request["plant"]) && request["plant"].length === 3 ? "3" : "2";
   const texts: Texts = id === "interaction" ? { size } : {};
   const specs = fieldsOf(id, texts);
   for (const spec of specs) if (spec.key !== "size") texts[spec.key] = writeField(spec, request);
-  const rest = Object.fromEntries(
-    Object.entries(request).filter(([name]) => !NOT_TYPED.includes(name) && !specs.some(({ key }) => key === name || key.startsWith(`${name}.`))),
-  );
+  const rest = Object.fromEntries(partsWithoutField(request, specs).filter(([path]) => !NOT_TYPED.includes(path)));
   if (Object.keys(rest).length > 0) texts[REST] = JSON.stringify(rest);
   return texts;
 }

@@ -80,7 +80,7 @@ struct CertificateProblem {
 struct CertifyOptions {
     double gap = 0.01;            ///< goal = (1 - gap) upper; in (0, 1)
     std::optional<double> reach;  ///< the root box over the design; default kReachOfPi, kReachOfPid
-    int max_boxes = 4'000'000;    ///< ends the search without the whole proof
+    int max_boxes = 200'000;      ///< ends the search without the whole proof; about 0.3 kB each
     bool keep_leaves = false;     ///< return them
 };
 

@@ -26,6 +26,7 @@ constexpr int kEchoes = 4, kEchoesOfMany = 3, kEchoesAtLowAccuracy = 2;
 constexpr std::size_t kMany = 4;  // delayed signals
 constexpr double kLowAccuracy = 1e-5;
 constexpr double kNearZero = 4e-5;  // frequency, of 1/time_scale, from which the values at 0 are extrapolated
+constexpr double kManyRates = 8;    // of a step: beyond it doubling is faster than a series
 constexpr double kNoError = 1e-9;   // of the step: the error's final value
 constexpr double kOneLevel = 16;    // by which half the step lowers the error
 constexpr double kUnbounded = 1e6;
@@ -94,6 +95,11 @@ public:
     }
 
 private:
+    struct Step {
+        double h;
+        const ManyInputsStep* of_level;  ///< null: used once
+    };
+
     static int smoothing(const DiagramSystem& system, const DiagramResponseOptions& options) {
         if (options.tolerance > kLowAccuracy) return kEchoesAtLowAccuracy;
         return system.delayed.size() > kMany ? kEchoesOfMany : kEchoes;
@@ -203,18 +209,13 @@ private:
             equal_steps_ = 0;
             return;
         }
-        if (!(odd ? odd_step(until - t, until) : advance(steps_->level(level_), within(level_), until))) {
+        if (!(odd ? odd_step(until - t, until) : usual_step(until))) {
             --level_;
             equal_steps_ = 0;
             return;
         }
         equal_steps_ = odd ? 0 : equal_steps_ + 1;
         if (const auto passages = echoes_.pass(until + slack_)) pass_echo(until, *passages);
-    }
-
-    bool odd_step(double h, double until) {
-        const ManyInputsStep map = steps_->step(h);
-        return advance(map, WithinStep(system_, to_node_, map, slack_), until);
     }
 
     void pass_echo(double t, int passages) {
@@ -246,16 +247,16 @@ private:
     }
 
     /// False: what enters and leaves within the step is not determined.
-    bool advance(const ManyInputsStep& map, const WithinStep& within, double until) {
+    bool advance(const Step& step, const WithinStep& within, double until) {
         const std::size_t now = out_.t_.size() - 1;
         if (!within.solvable()) return false;
         for (std::size_t k = 0; k < system_.delayed.size(); ++k) {
-            const bool known = system_.delayed[k].L >= map.h - slack_;
+            const bool known = system_.delayed[k].L >= step.h - slack_;
             const Signal end = known ? delayed_at(k, until).before : Signal{};
             end_[Index(k)] = end.value;
             end_slope_[Index(k)] = end.slope;
         }
-        step_to_end(map);
+        step_to_end(step);
         if (!within.empty()) {
             compute_node(next_, end_, end_slope_);
             const auto& unknown = within.signals();
@@ -273,7 +274,7 @@ private:
                 end_[Index(unknown[std::size_t(k)])] = ends[k];
                 end_slope_[Index(unknown[std::size_t(k)])] = ends[count + k];
             }
-            step_to_end(map);
+            step_to_end(step);
         }
         z_.swap(next_);
         v_.swap(end_);
@@ -283,26 +284,43 @@ private:
     }
 
     /// The states at the end of a step, from cubics through both ends of the delayed signals.
-    void step_to_end(const ManyInputsStep& map) {
+    void step_to_end(const Step& step) {
         const Index n = z_.size(), inputs = v_.size();
         in_step_.head(n) = z_;
         for (Index k = 0; k < inputs; ++k) {
             const Signal end{end_[k], end_slope_[k]};
-            const Cubic c = system_.delayed[std::size_t(k)].L < map.h - slack_
-                                ? parabola(map.h, v_[k], end)
-                                : hermite_taylor(map.h, {v_[k], v_slope_[k]}, end);
+            const Cubic c = system_.delayed[std::size_t(k)].L < step.h - slack_
+                                ? parabola(step.h, v_[k], end)
+                                : hermite_taylor(step.h, {v_[k], v_slope_[k]}, end);
             for (std::size_t j = 0; j < c.size(); ++j) in_step_[n + Index(j) * inputs + k] = c[j];
         }
-        next_.noalias() = map.all * in_step_;
-        next_ += map.constant;
+        if (step.of_level == nullptr) {
+            next_ = steps_->after(step.h, in_step_, true);
+            return;
+        }
+        next_.noalias() = step.of_level->all * in_step_;
+        next_ += step.of_level->constant;
     }
 
-    const WithinStep& within(int level) {
-        const ManyInputsStep& map = steps_->level(level);
-        while (within_.size() <= std::size_t(level)) within_.emplace_back();
-        auto& found = within_[std::size_t(level)];
-        if (!found) found.emplace(system_, to_node_, map, slack_);
-        return *found;
+    WithinStep within(const ManyInputsStep& map) const {
+        return {system_, map.h, [&map](const VectorXd& input) { return VectorXd(map.all * input); }, to_node_, slack_};
+    }
+
+    bool usual_step(double until) {
+        const ManyInputsStep& map = steps_->level(level_);
+        while (within_.size() <= std::size_t(level_)) within_.emplace_back();
+        auto& own = within_[std::size_t(level_)];
+        if (!own) own.emplace(within(map));
+        return advance({map.h, &map}, *own, until);
+    }
+
+    bool odd_step(double h, double until) {
+        if (h * steps_->rate() > kManyRates) {
+            const ManyInputsStep map = steps_->step(h);
+            return advance({h, &map}, within(map), until);
+        }
+        const auto after = [&](const VectorXd& input) { return steps_->after(h, input, false); };
+        return advance({h, nullptr}, WithinStep(system_, h, after, to_node_, slack_), until);
     }
 
     const DiagramSystem& system_;

@@ -3,15 +3,15 @@
 //
 //   e = A e + b,  e: values, then slopes, at the end of the step;  b: what they were if they ended at 0
 //
-// Each is a parabola with its value at the start and value and slope at the end of the step, read a dead time before its
-// end: without dead time the method is Radau's of third order, which damps what is faster than the step (Hairer and
+// Each is a parabola with its value at the start and value and slope at the end of the step, read a dead time before
+// its end: without dead time the method is Radau's of third order, which damps what is faster than the step (Hairer and
 // Wanner 1996, IV.5). A cubic with both slopes keeps such parts alive.
 #pragma once
 
 #include <Eigen/LU>
+#include <functional>
 #include <vector>
 
-#include "engine/blocks/diagram_steps.h"
 #include "engine/blocks/diagram_system.h"
 #include "engine/numerics/cubic.h"
 
@@ -19,8 +19,11 @@ namespace tunewright {
 
 class WithinStep {
 public:
+    /// `after`: the states after a step of length h, of the input of ManyInputsStep::all and without constant;
     /// `to_node`: from states, delayed signals and their slopes to all signals and their slopes.
-    WithinStep(const DiagramSystem& system, const Eigen::MatrixXd& to_node, const ManyInputsStep& map, double slack);
+    WithinStep(const DiagramSystem& system, double h,
+               const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& after, const Eigen::MatrixXd& to_node,
+               double slack);
 
     const std::vector<std::size_t>& signals() const { return signals_; }
     bool empty() const { return signals_.empty(); }
@@ -34,7 +37,7 @@ public:
 private:
     double h_;
     std::vector<std::size_t> signals_;
-    std::vector<double> until_;  ///< in the step, of each: its length less the dead time
+    std::vector<double> until_;                     ///< in the step, of each: its length less the dead time
     Eigen::PartialPivLU<Eigen::MatrixXd> of_left_;  ///< I - A
     bool solvable_ = true;
 };

@@ -82,6 +82,7 @@ public:
           check_(data_.problem, std::numbers::pi / half_period_, harmonics_, data_.edges),
           spaces_(kBatch) {
         result_.problem = problem;
+        result_.asked_gap = options.gap;
         result_.goal = data_.goal;
         result_.w0 = std::numbers::pi / half_period_;
         result_.harmonics = harmonics_;

@@ -88,7 +88,8 @@ inline constexpr double kReachOfPi = 20, kReachOfPid = 4;
 
 struct Certificate {
     CertificateProblem problem;
-    double goal = 0;   ///< (1 - gap) upper
+    double asked_gap = 0;
+    double goal = 0;   ///< (1 - asked_gap) upper
     double lower = 0;  ///< the proven bound: `goal` if the search is complete, else the least bound of an open box
     double gap = 0;    ///< (upper - lower)/upper
     bool complete = false;

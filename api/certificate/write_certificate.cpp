@@ -1,28 +1,18 @@
 #include "api/certificate/write_certificate.h"
 
-#include "api/json/writer.h"
+#include <algorithm>
+#include <array>
 
 namespace tunewright::api {
 namespace {
 
 void write_head(Writer& out, const Certificate& certificate) {
-    const CertificateProblem& problem = certificate.problem;
     out.begin_object();
     out.key("certificate").integer(1);
     out.key("claim").text(
         "No stable controller of the root box with |S| <= Ms and |T| <= Mt has an IAE below the goal.");
-    out.key("plant").begin_object();
-    out.key("num").numbers(problem.plant.num);
-    out.key("den").numbers(problem.plant.den);
-    out.key("L").number(problem.plant.L);
-    out.end_object();
-    out.key("structure").text(to_string(problem.structure));
-    out.key("Tf").number(problem.Tf);
-    out.key("Ms").number(problem.Ms);
-    out.key("Mt").number(problem.Mt);
+    write_problem(certificate.problem, out);
     out.key("goal").number(certificate.lower);
-    out.key("upper").number(problem.upper);
-    out.key("design").numbers(problem.design);
     out.key("root").begin_object();
     out.key("low").numbers(certificate.root.low);
     out.key("high").numbers(certificate.root.high);
@@ -83,6 +73,40 @@ const char* to_string(CertifiedStructure structure) {
         case CertifiedStructure::pid_tied: return "pid_tied";
     }
     return "pi";
+}
+
+void write_problem(const CertificateProblem& problem, Writer& out) {
+    out.key("plant").begin_object();
+    out.key("num").numbers(problem.plant.num);
+    out.key("den").numbers(problem.plant.den);
+    out.key("L").number(problem.plant.L);
+    out.end_object();
+    out.key("structure").text(to_string(problem.structure));
+    out.key("Tf").number(problem.Tf);
+    out.key("Ms").number(problem.Ms);
+    out.key("Mt").number(problem.Mt);
+    out.key("upper").number(problem.upper);
+    out.key("design").numbers(problem.design);
+}
+
+CertificateProblem read_problem(const Json& json) {
+    CertificateProblem problem;
+    const Json& plant = json.at("plant");
+    problem.plant = {plant.at("num").get<std::vector<double>>(), plant.at("den").get<std::vector<double>>(),
+                     plant.at("L").get<double>()};
+    problem.structure = certified_structure(json.at("structure").get<std::string>());
+    problem.Tf = json.at("Tf");
+    problem.Ms = json.at("Ms");
+    problem.Mt = json.at("Mt");
+    problem.upper = json.at("upper");
+    problem.design = json.at("design");
+    return problem;
+}
+
+CertifiedStructure certified_structure(const std::string& name) {
+    for (const auto one : {CertifiedStructure::pid_fixed, CertifiedStructure::pid_tied})
+        if (name == to_string(one)) return one;
+    return CertifiedStructure::pi;
 }
 
 std::string write_certificate(const Certificate& certificate) {

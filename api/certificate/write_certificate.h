@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "api/json/json.h"
+#include "api/json/writer.h"
 #include "engine/certificate/certificate.h"
 
 namespace tunewright::api {
@@ -10,7 +12,13 @@ namespace tunewright::api {
 /// The certificate must have its leaves.
 std::string write_certificate(const Certificate& certificate);
 
+/// The members `plant`, `structure`, `Tf`, `Ms`, `Mt`, `design` and `upper` of the object that is open.
+void write_problem(const CertificateProblem& problem, Writer& out);
+/// Of those members. Throws Json::exception for others.
+CertificateProblem read_problem(const Json& json);
+
 /// "pi", "pid_fixed" or "pid_tied".
 const char* to_string(CertifiedStructure structure);
+CertifiedStructure certified_structure(const std::string& name);
 
 }  // namespace tunewright::api

@@ -175,6 +175,27 @@ std::string model_text(std::string_view answer) try {
     return std::string(answer) + "\n";
 }
 
+std::string score_text(std::string_view answer) try {
+    const Json value = parsed_or_null(answer);
+    const auto count = [&](const char* name) { return number(value.at(name)); };
+    std::string out = words(value.at("name")) + ": limits hold on " + count("kept") + " of " +
+                      number(Json(value.at("problems").size())) + " problems; broken on " + count("limits_broken") +
+                      ", unstable on " + count("unstable") + ", no settings for " + count("no_settings") + ".\n";
+    if (value.contains("median_ratio"))
+        out +=
+            "IAE over the proved bound: median " + count("median_ratio") + ", at most " + count("worst_ratio") + ".\n";
+    if (const Json range = value.value("range", Json()); range.is_object())
+        out += "All limits hold for tau from " + number(range.at("tau_low")) + " to " + number(range.at("tau_high")) +
+               " (" + number(range.at("problems")) + " problems).\n";
+    Columns columns({"problem", "status", "ratio", "Ms", "Mt"}, 5);
+    for (const Json& one : value.at("problems"))
+        columns.row({words(one.at("name")), words(one.at("status")), number(one.value("ratio", Json())),
+                     number(one.value("Ms", Json())), number(one.value("Mt", Json()))});
+    return out + "\n" + columns.text();
+} catch (const Json::exception&) {
+    return std::string(answer) + "\n";
+}
+
 std::string methods_text(std::string_view answer) {
     return listing(answer, "methods", {{"id", "id"}, {"method", "title"}});
 }

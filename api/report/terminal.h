@@ -26,6 +26,10 @@ std::string check_text(std::string_view answer);
 /// An answer about a structure: its conclusions, controllers and figures. Any other text is returned unchanged.
 std::string structure_text(std::string_view answer);
 
+/// An answer of score: counts, ratios, range, and the problems without a solution. Any other text is returned
+/// unchanged.
+std::string score_text(std::string_view answer);
+
 /// An answer of identify: the candidates with their fits, the chosen one's parameters with standard errors, warnings.
 std::string model_text(std::string_view answer);
 

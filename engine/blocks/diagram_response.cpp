@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/blocks/diagram_steps.h"
+#include "engine/blocks/within_step.h"
 #include "engine/numerics/cubic.h"
 #include "engine/simulation/run/delayed_input.h"
 #include "engine/simulation/run/stopping_rule.h"
@@ -25,10 +26,9 @@ constexpr int kEchoes = 4, kEchoesOfMany = 3, kEchoesAtLowAccuracy = 2;
 constexpr std::size_t kMany = 4;  // delayed signals
 constexpr double kLowAccuracy = 1e-5;
 constexpr double kNearZero = 4e-5;       // frequency, of 1/time_scale, from which the values at 0 are extrapolated
+constexpr double kManyRates = 8;         // of a step: beyond it doubling is faster than a series
 constexpr double kNoError = 1e-9;        // of the step: the error's final value
 constexpr double kNoErrorOfPeak = 1e-7;  // the same, of the largest value of y
-constexpr int kIterations = 12;          // of a step that is longer than a dead time
-constexpr double kConverged = 1e-4;      // of the tolerance: change of the largest value in an iteration
 constexpr double kOneLevel = 16;         // by which half the step lowers the error
 constexpr double kUnbounded = 1e6;
 constexpr int kLookAtRounding = 16;  // steps between two looks at the parts of signals
@@ -96,6 +96,11 @@ public:
     }
 
 private:
+    struct Step {
+        double h;
+        const ManyInputsStep* of_level;  ///< null: used once
+    };
+
     static int smoothing(const DiagramSystem& system, const DiagramResponseOptions& options) {
         if (options.tolerance > kLowAccuracy) return kEchoesAtLowAccuracy;
         return system.delayed.size() > kMany ? kEchoesOfMany : kEchoes;
@@ -205,8 +210,7 @@ private:
             equal_steps_ = 0;
             return;
         }
-        const bool taken = odd ? advance(steps_->step(until - t), t, until) : advance(steps_->level(level_), t, until);
-        if (!taken) {
+        if (!(odd ? odd_step(until - t, until) : usual_step(until))) {
             --level_;
             equal_steps_ = 0;
             return;
@@ -243,41 +247,35 @@ private:
         return true;
     }
 
-    /// False: the iteration of a step longer than a dead time does not converge.
-    bool advance(const ManyInputsStep& map, double t, double until) {
+    /// False: what enters and leaves within the step is not determined.
+    bool advance(const Step& step, const WithinStep& within, double until) {
         const std::size_t now = out_.t_.size() - 1;
-        const double h = until - t;
-        end_ = v_;
-        end_slope_ = v_slope_;
-        unknown_.clear();
+        if (!within.solvable()) return false;
         for (std::size_t k = 0; k < system_.delayed.size(); ++k) {
-            if (system_.delayed[k].L < h - slack_) {
-                unknown_.push_back(k);
-                continue;
-            }
-            const Sides sides = delayed_at(k, until);
-            end_[Index(k)] = sides.before.value;
-            end_slope_[Index(k)] = sides.before.slope;
+            const bool known = system_.delayed[k].L >= step.h - slack_;
+            const Signal end = known ? delayed_at(k, until).before : Signal{};
+            end_[Index(k)] = end.value;
+            end_slope_[Index(k)] = end.slope;
         }
-        // The first guess continues along the slopes.
-        const Index n = out_.signals_;
-        last_ = Eigen::Map<const VectorXd>(&out_.values_[now * 2 * std::size_t(n)], 2 * n);
-        last_.head(n) += h * last_.tail(n);
-        for (int i = 0; i < kIterations; ++i) {
-            for (const std::size_t k : unknown_) {
-                const auto& [from, L] = system_.delayed[k];
-                const Cubic c = hermite_taylor(h, out_.at(now, from), {last_[from], last_[n + from]});
-                end_[Index(k)] = value_at(c, h - L);
-                end_slope_[Index(k)] = slope_at(c, h - L);
-            }
-            step_to_end(map);
-            if (unknown_.empty()) break;
+        step_to_end(step);
+        if (!within.empty()) {
             compute_node(next_, end_, end_slope_);
-            const double change =
-                (node_ - last_).head(n).cwiseAbs().cwiseQuotient(largest_.cwiseMax(1e-300)).maxCoeff();
-            last_ = node_;
-            if (change < kConverged * options_.tolerance) break;
-            if (i + 1 == kIterations) return false;
+            const auto& unknown = within.signals();
+            const Index count = Index(unknown.size());
+            left_.resize(2 * count);
+            for (Index k = 0; k < count; ++k) {
+                const int from = system_.delayed[unknown[std::size_t(k)]].from;
+                const Signal left =
+                    within.left(std::size_t(k), out_.at(now, from).value, {node_[from], node_[out_.signals_ + from]});
+                left_[k] = left.value;
+                left_[count + k] = left.slope;
+            }
+            const VectorXd ends = within.solve(left_);
+            for (Index k = 0; k < count; ++k) {
+                end_[Index(unknown[std::size_t(k)])] = ends[k];
+                end_slope_[Index(unknown[std::size_t(k)])] = ends[count + k];
+            }
+            step_to_end(step);
         }
         z_.swap(next_);
         v_.swap(end_);
@@ -287,19 +285,43 @@ private:
     }
 
     /// The states at the end of a step, from cubics through both ends of the delayed signals.
-    void step_to_end(const ManyInputsStep& map) {
-        const double h = map.h;
+    void step_to_end(const Step& step) {
         const Index n = z_.size(), inputs = v_.size();
         in_step_.head(n) = z_;
-        in_step_.segment(n, inputs) = v_;
-        in_step_.segment(n + inputs, inputs) = v_slope_;
         for (Index k = 0; k < inputs; ++k) {
-            const double mean = (end_[k] - v_[k]) / h;
-            in_step_[n + 2 * inputs + k] = (6 * mean - 4 * v_slope_[k] - 2 * end_slope_[k]) / h;
-            in_step_[n + 3 * inputs + k] = (6 * (v_slope_[k] + end_slope_[k]) - 12 * mean) / (h * h);
+            const Signal end{end_[k], end_slope_[k]};
+            const Cubic c = system_.delayed[std::size_t(k)].L < step.h - slack_
+                                ? parabola(step.h, v_[k], end)
+                                : hermite_taylor(step.h, {v_[k], v_slope_[k]}, end);
+            for (std::size_t j = 0; j < c.size(); ++j) in_step_[n + Index(j) * inputs + k] = c[j];
         }
-        next_.noalias() = map.all * in_step_;
-        next_ += map.constant;
+        if (step.of_level == nullptr) {
+            next_ = steps_->after(step.h, in_step_, true);
+            return;
+        }
+        next_.noalias() = step.of_level->all * in_step_;
+        next_ += step.of_level->constant;
+    }
+
+    WithinStep within(const ManyInputsStep& map) const {
+        return {system_, map.h, [&map](const VectorXd& input) { return VectorXd(map.all * input); }, to_node_, slack_};
+    }
+
+    bool usual_step(double until) {
+        const ManyInputsStep& map = steps_->level(level_);
+        while (within_.size() <= std::size_t(level_)) within_.emplace_back();
+        auto& own = within_[std::size_t(level_)];
+        if (!own) own.emplace(within(map));
+        return advance({map.h, &map}, *own, until);
+    }
+
+    bool odd_step(double h, double until) {
+        if (h * steps_->rate() > kManyRates) {
+            const ManyInputsStep map = steps_->step(h);
+            return advance({h, &map}, within(map), until);
+        }
+        const auto after = [&](const VectorXd& input) { return steps_->after(h, input, false); };
+        return advance({h, nullptr}, WithinStep(system_, h, after, to_node_, slack_), until);
     }
 
     const DiagramSystem& system_;
@@ -309,13 +331,13 @@ private:
     VectorXd v_, v_slope_;             // now, after a jump
     VectorXd end_, end_slope_, next_;  // the same and the states, at the end of a step
     Eigen::MatrixXd to_node_;          // from states, delayed signals and their slopes to all signals and slopes
-    VectorXd of_inputs_, at_node_, in_step_, node_, last_;
-    std::vector<std::size_t> unknown_;  // delayed signals that enter and leave within a step
+    VectorXd of_inputs_, at_node_, in_step_, node_, left_;
     Echoes echoes_;
     StoppingRule stopping_;
     DiagramResponse out_;
     VectorXd largest_;  // of each signal so far
     std::optional<ManyInputsPropagator> steps_;
+    std::vector<std::optional<WithinStep>> within_;  // of each level
     double slack_ = 0;
     int level_ = 0, equal_steps_ = 0;
 };

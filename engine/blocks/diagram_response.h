@@ -2,8 +2,8 @@
 //
 // Method of steps (Bellman and Cooke 1963, chapter 3): within a step each delayed signal is a cubic through stored
 // values and slopes, everything else is exact. Steps end at the echoes of every jump, are short behind them, and double
-// where a cubic through the outer points of two steps is accurate enough in the middle. A step longer than a dead time
-// is found by iteration.
+// where a cubic through the outer points of two steps is accurate enough in the middle. What enters and leaves
+// within a step, because that is longer than a dead time, is solved for.
 #pragma once
 
 #include <optional>

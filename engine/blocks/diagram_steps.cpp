@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kTerms = 14;            // of Taylor's series: 0.5^14/14! is below rounding
 constexpr double kLargestTerm = 0.5;  // rate times step
+constexpr int kDerivatives = 4;       // of each input, from 0
 
 void put_together(ManyInputsStep& step) {
     const Eigen::Index n = step.Phi.rows(), inputs = step.Gamma[0].cols();
@@ -70,6 +71,31 @@ ManyInputsStep ManyInputsPropagator::step(double h) const {
     for (int i = 0; i < doublings; ++i) out = out.doubled();
     out.h = h;
     return out;
+}
+
+Eigen::VectorXd ManyInputsPropagator::after(double h, const Eigen::VectorXd& input, bool constant) const {
+    const Eigen::Index n = F_.rows(), inputs = G_.cols();
+    const int parts = std::max(1, static_cast<int>(std::ceil(h * rate_ / kLargestTerm)));
+    const double part = h / parts;
+    Eigen::VectorXd z = input.head(n), term(n), next(n);
+    Eigen::MatrixXd v = Eigen::Map<const Eigen::MatrixXd>(input.data() + n, inputs, kDerivatives);
+    for (int at = 0; at < parts; ++at) {
+        term = z;
+        double factor = 1;
+        for (int k = 0; k < kTerms; ++k) {
+            next.noalias() = F_ * term;
+            if (k < kDerivatives) next.noalias() += G_ * v.col(k);
+            if (k == 0 && constant) next += c_;
+            term.swap(next);
+            factor *= part / (k + 1);
+            z += factor * term;
+        }
+        for (int j = 0; j < kDerivatives; ++j) {
+            double power = 1;
+            for (int i = j + 1; i < kDerivatives; ++i) v.col(j) += (power *= part / (i - j)) * v.col(i);
+        }
+    }
+    return z;
 }
 
 const ManyInputsStep& ManyInputsPropagator::level(int level) {

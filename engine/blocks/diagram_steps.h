@@ -28,6 +28,9 @@ public:
     const ManyInputsStep& level(int level);
     /// The step of any length, by Taylor's series and doubling.
     ManyInputsStep step(double h) const;
+    /// The states after a step of any length, by Taylor's series: less work for a length of few rates that is used
+    /// once. `input` as of ManyInputsStep::all; without `constant` for c = 0.
+    Eigen::VectorXd after(double h, const Eigen::VectorXd& input, bool constant) const;
     /// A bound of the rates of F, whatever the units of its states.
     double rate() const { return rate_; }
 

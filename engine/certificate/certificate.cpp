@@ -23,13 +23,10 @@ namespace tunewright {
 namespace certificate {
 namespace {
 
-/// A sign function's mean loses the part of the IAE near the changes of sign, of order 1/harmonics^2: up to 0.45 % with
-/// 128 on plants with a zero in the right half-plane.
-constexpr int kHarmonics = 128, kHarmonicsOfSmallGap = 512;
-constexpr double kSmallGap = 0.005;
-
-int harmonics_for(double gap) { return gap < kSmallGap ? kHarmonicsOfSmallGap : kHarmonics; }
-
+/// A sign function's mean loses the part of the IAE near the changes of sign, of order 1/harmonics^2. The number is
+/// doubled until the design's own mean loses less than this part of the gap, or no sign function could close the gap.
+constexpr double kMaxLossOverGap = 0.4;
+constexpr int kMinHarmonics = 128, kMaxHarmonics = 2048;
 constexpr int kBatch = 32;
 constexpr int kMaxSigns = 60;
 /// A box of at most this part of the design in k, relative to its own size, may ask for a sign function.
@@ -55,6 +52,23 @@ struct TreeNode {
     int leaf = -1;
 };
 
+int harmonics_for(const CertificateProblem& problem, const LinearPlant& plant, double half_period, double gap) {
+    const auto response = load_response(problem, plant, problem.design, half_period);
+    if (!response) return kMinHarmonics;
+    const GainsOf<double> design(CertifiedBox{problem.design, problem.design});
+    for (int K = kMinHarmonics; K < kMaxHarmonics; K *= 2) {
+        const auto a = mean_coefficients(response->sign, jackson_factors(K));
+        double mean = 0;
+        for (std::size_t m = 0; m < a.size(); ++m) {
+            const double w = static_cast<double>(m) * std::numbers::pi / half_period;
+            const auto at = point_at(problem, ComplexOf<double>{0.0, w});
+            mean += 0.5 * (a[m].low() + a[m].high()) * harmonic_of(terms_at(problem.structure, design, at)).value;
+        }
+        if (mean >= (1 - kMaxLossOverGap * gap) * response->IAE) return K;
+    }
+    return kMaxHarmonics;
+}
+
 class Search {
 public:
     Search(const CertificateProblem& problem, const CertifyOptions& options, const RunControl& control,
@@ -63,14 +77,15 @@ public:
           control_(control),
           plant_(plant),
           half_period_(std::max(8 / scale, 1.25 * design.time_of_most)),
-          data_(problem, plant, (1 - options.gap) * problem.upper, scale, std::numbers::pi / half_period_,
-                harmonics_for(options.gap)),
-          check_(data_.problem, std::numbers::pi / half_period_, harmonics_for(options.gap), data_.edges),
+          harmonics_(harmonics_for(problem, plant, half_period_, options.gap)),
+          data_(problem, plant, (1 - options.gap) * problem.upper, scale, std::numbers::pi / half_period_, harmonics_),
+          check_(data_.problem, std::numbers::pi / half_period_, harmonics_, data_.edges),
           spaces_(kBatch) {
         result_.problem = problem;
+        result_.asked_gap = options.gap;
         result_.goal = data_.goal;
         result_.w0 = std::numbers::pi / half_period_;
-        result_.harmonics = harmonics_for(options.gap);
+        result_.harmonics = harmonics_;
         result_.root = root();
         add_sign(problem.design);
     }
@@ -87,12 +102,17 @@ public:
     }
 
 private:
+    /// |k| of the design, or what counts as much near the loop's peak if its integral does nearly all.
+    double unit_of_k() const {
+        return std::max(std::abs(data_.problem.design[0]), data_.problem.design[1] / data_.scale);
+    }
+
     CertifiedBox root() const {
         const auto& problem = data_.problem;
         const double reach =
             options_.reach.value_or(problem.structure == CertifiedStructure::pi ? kReachOfPi : kReachOfPid);
         CertifiedBox box;
-        box.low = {-reach * std::abs(problem.design[0]), (1 - 1e-9) / data_.goal, 0};
+        box.low = {-reach * unit_of_k(), (1 - 1e-9) / data_.goal, 0};
         box.high = {-box.low[0], std::max(reach * problem.design[1], 1.1 * box.low[1]), reach * problem.design[2]};
         return box;
     }
@@ -150,7 +170,7 @@ private:
             open.best = std::move(outcome.leaf);
         }
         const CertifiedBox box = nodes_[static_cast<std::size_t>(open.node)].box;
-        const bool small = box.high[0] - box.low[0] < 2 * kSmallBox * std::abs(data_.problem.design[0]) &&
+        const bool small = box.high[0] - box.low[0] < 2 * kSmallBox * unit_of_k() &&
                            box.high[1] - box.low[1] < 2 * kSmallBox * data_.problem.design[1];
         if (outcome.wants_phi && small && !open.had_phi && !added && add_sign(middle(box), data_.goal * 1.001)) {
             added = true;
@@ -221,6 +241,7 @@ private:
     const RunControl& control_;
     const LinearPlant& plant_;
     double half_period_;
+    int harmonics_;
     SearchData data_;
     LeafCheck check_;
     std::vector<VisitSpace> spaces_;

@@ -80,7 +80,7 @@ struct CertificateProblem {
 struct CertifyOptions {
     double gap = 0.01;            ///< goal = (1 - gap) upper; in (0, 1)
     std::optional<double> reach;  ///< the root box over the design; default kReachOfPi, kReachOfPid
-    int max_boxes = 4'000'000;    ///< ends the search without the whole proof
+    int max_boxes = 200'000;      ///< ends the search without the whole proof; about 0.3 kB each
     bool keep_leaves = false;     ///< return them
 };
 
@@ -88,7 +88,8 @@ inline constexpr double kReachOfPi = 20, kReachOfPid = 4;
 
 struct Certificate {
     CertificateProblem problem;
-    double goal = 0;   ///< (1 - gap) upper
+    double asked_gap = 0;
+    double goal = 0;   ///< (1 - asked_gap) upper
     double lower = 0;  ///< the proven bound: `goal` if the search is complete, else the least bound of an open box
     double gap = 0;    ///< (upper - lower)/upper
     bool complete = false;

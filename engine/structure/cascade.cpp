@@ -13,6 +13,7 @@
 #include "engine/structure/cascade_diagram.h"
 #include "engine/structure/limited_search.h"
 #include "engine/structure/local_peaks.h"
+#include "engine/structure/nearby_stability.h"
 #include "engine/structure/step_figures.h"
 
 namespace tunewright::structure {
@@ -135,7 +136,13 @@ private:
         return std::move(*cascade_diagram(plants_, both.inner, &both.outer));
     }
 
-    bool stable(const VectorXd& x) const { return count_unstable_poles(diagram(x).diagram).stable(); }
+    bool stable(const VectorXd& x) const {
+        const CascadeControllers both = controllers(x);
+        const ParallelPid inner = to_parallel(both.inner), outer = to_parallel(both.outer);
+        std::vector<Complex> f(grid_.size());
+        for (std::size_t i = 0; i < f.size(); ++i) f[i] = 1.0 / sensitivities(plants_, inner, outer, grid_[i]).valve;
+        return nearby_.stable(std::move(f), [&] { return count_unstable_poles(diagram(x).diagram).stable(); });
+    }
 
     /// ln of each function over its limit; -infinity for one without a limit in this search.
     std::vector<double> over_limits(const Sensitivities& at, bool joint) const {
@@ -195,6 +202,7 @@ private:
     const CascadeDesign& design_;
     Settings inner_, outer_;
     std::vector<double> grid_;
+    mutable NearbyStability nearby_;
     const RunControl& control_;
 };
 

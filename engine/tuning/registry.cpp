@@ -5,6 +5,7 @@
 #include "engine/number_text.h"
 #include "engine/tuning/arrieta/arrieta.h"
 #include "engine/tuning/emulation/emulation.h"
+#include "engine/tuning/formula/formula_rule.h"
 #include "engine/tuning/limits.h"
 #include "engine/tuning/method/method.h"
 #include "engine/tuning/method/setpoint.h"
@@ -67,6 +68,7 @@ std::vector<TuningMethod> all_methods() {
         haalman_method(),
         gain_phase_margin_method(),
         visioli_integrating_method(),
+        formula_method(),
     };
 }
 

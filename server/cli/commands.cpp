@@ -11,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "api/certificate/certificate_call.h"
 #include "api/examples/examples.h"
 #include "api/registries.h"
 #include "api/report/report.h"
@@ -157,6 +158,17 @@ int controller_record(const ControllerRecordCommand& command) {
     return answered(api::controller_record_call(asked, {}), command.output, {}, command.file);
 }
 
+int score(const ScoreCommand& command) {
+    std::optional<std::string> file;
+    if (!command.file.empty() && !read_input(command.file, file.emplace()))
+        return write_problem(unreadable(command.file), command.output);
+    AllCores all;
+    RunControl control;
+    control.spread = all.computation.spread();
+    return answered(api::score_call(api::score_request(command.words, file), control), command.output, api::score_text,
+                    command.file);
+}
+
 int plant(const PlantCommand& command) {
     std::string text = command.text;
     if (text == "-") read_input("-", text);
@@ -173,6 +185,17 @@ int code(const CodeCommand& command) {
     if (const auto* problem = std::get_if<api::Problem>(&written))
         return write_problem(*problem, {}, command.result.file);
     return write_text(std::get<api::ControllerCode>(written).text);
+}
+
+int certificate(const ResultWords& command) {
+    std::string result, request;
+    if (const auto refused = read_texts(command, result, request)) return *refused;
+    AllCores all;
+    RunControl control;
+    control.spread = all.computation.spread();
+    const auto written = api::certificate_file({result, request}, command.controller, control);
+    if (const auto* problem = std::get_if<api::Problem>(&written)) return write_problem(*problem, {}, command.file);
+    return write_text(std::get<std::string>(written));
 }
 
 int report(const ResultWords& command) {

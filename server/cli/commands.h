@@ -4,6 +4,7 @@
 #include <string>
 
 #include "api/code/code.h"
+#include "api/services/score_service.h"
 #include "api/shorthand.h"
 #include "server/cli/output.h"
 
@@ -47,6 +48,13 @@ struct ControllerRecordCommand {
 };
 int controller_record(const ControllerRecordCommand& command);
 
+struct ScoreCommand {
+    std::string file;  ///< a request, or a CSV of settings; "": the words; "-": standard input
+    api::ScoreWords words;
+    OutputWords output;
+};
+int score(const ScoreCommand& command);
+
 struct PlantCommand {
     std::string text;  ///< "-": standard input
     std::string time_unit = "s";
@@ -67,6 +75,9 @@ struct CodeCommand {
     api::CodeWords words;  ///< parameters of GET /v1/jobs/{id}/controllers/{index}/code
 };
 int code(const CodeCommand& command);
+
+/// The answer of GET /v1/jobs/{id}/controllers/{index}/certificate.
+int certificate(const ResultWords& command);
 
 /// The answer of GET /v1/jobs/{id}/report.html.
 int report(const ResultWords& command);

@@ -180,6 +180,23 @@ void add_loop_commands(CommandTree& tree) {
     add_record_options(asking_app, asking.question);
     add_output_options(asking_app, asking.output, false);
 
+    ScoreCommand& scoring = tree.keep<ScoreCommand>();
+    CLI::App& score_app =
+        tree.add("score", "A tuning rule against problems with proved bounds", [&] { return score(scoring); });
+    score_app.add_option("file", scoring.file,
+                         "The request of POST /v1/score as JSON, or a CSV of settings (problem,Kp,Ti,Td)");
+    for (const auto& [name, word, help] :
+         {std::tuple{"--Kp", &scoring.words.Kp, "Formula of Kp, such as T/(2*K*L)"},
+          {"--Ti", &scoring.words.Ti, "Formula of Ti"},
+          {"--Td", &scoring.words.Td, "Formula of Td"},
+          {"--method", &scoring.words.method, "A method in place of formulas, such as simc"},
+          {"--structure", &scoring.words.structure, "pi, pid_tied or pid_fixed"},
+          {"--Ms", &scoring.words.Ms, "Only problems with this limit"},
+          {"--problems", &scoring.words.problems, "Only problems whose names begin so, such as amigo/"},
+          {"--name", &scoring.words.name, "A name for the answer"}})
+        score_app.add_option(name, *word, help)->type_name("WORD");
+    add_output_options(score_app, scoring.output, true);
+
     PlantCommand& typing = tree.keep<PlantCommand>();
     CLI::App& plant_app = tree.add("plant", "A typed plant such as \"2 e^(-3s)/(10s+1)\" as JSON, with its formula",
                                    [&] { return plant(typing); });
@@ -193,6 +210,11 @@ void add_loop_commands(CommandTree& tree) {
         tree.add("code", "A controller of a result as Structured Text, C or Python", [&] { return code(coding); });
     add_result_options(code_app, coding.result, "File of the request, for the head comment and its sample time");
     add_code_words(code_app, coding.words);
+
+    ResultWords& proving = tree.keep<ResultWords>();
+    CLI::App& proof_app = tree.add("certificate", "The proof of a result with certify, as a file for the checker",
+                                   [&] { return certificate(proving); });
+    add_result_options(proof_app, proving, "File of the request; it is not needed");
 
     ResultWords& reporting = tree.keep<ResultWords>();
     CLI::App& report_app =

@@ -7,14 +7,17 @@
 
 #include <fmt/format.h>
 
+#include "api/certificate/certificate_call.h"
 #include "api/check_service.h"
 #include "api/registries.h"
 #include "api/service.h"
 #include "api/services/range_service.h"
+#include "api/services/score_service.h"
 #include "api/services/structure_service.h"
 #include "server/clock.h"
 #include "server/http/app/negotiation.h"
 #include "server/http/app/problems.h"
+#include "server/routes/job_access.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 
@@ -34,8 +37,10 @@ constexpr std::chrono::seconds kRangeTime{20};
 constexpr std::chrono::seconds kStructureTime{20};
 constexpr std::chrono::seconds kIdentifyTime{30};
 constexpr std::chrono::seconds kCheckTime{30};
+constexpr std::chrono::seconds kScoreTime{60};
 constexpr std::chrono::seconds kRelayTime{10};
 constexpr std::chrono::seconds kConversionTime{10};
+constexpr std::chrono::seconds kCertificateTime{120};
 constexpr std::chrono::milliseconds kGonePollInterval{250};  // between checks for clients that have disconnected
 
 bool is_file(const http::Request& request) {
@@ -166,6 +171,29 @@ SyncCall of_product(api::Answer (*work)(std::string_view, std::string_view)) {
     return [work](const Call& call, const RunControl&) { return work(call.path.at("id"), call.request.body); };
 }
 
+/// Of a job whose result holds a certificate.
+api::Answer certificate_of(JobService& jobs, const Call& call, const RunControl& control) {
+    const auto view = jobs.find(call.path.at("id"));
+    if (!view || !may_see(call.request, view->job)) return api::refusal(http::problem(404, "There is no such job."));
+    const JobRecord& job = view->job;
+    if (job.result.empty()) return api::refusal(http::problem(409, "The job " + job.id + " has no result yet."));
+    const auto file = api::certificate_file({job.result, job.request}, call.path.at("index"), control);
+    if (const auto* problem = std::get_if<api::Problem>(&file)) return api::refusal(*problem);
+    return {200, std::get<std::string>(file)};
+}
+
+std::optional<Response> no_body(const http::Request&) { return std::nullopt; }
+
+/// The answer of `handler` as a file to keep.
+http::Handler as_file(http::Handler handler, const std::string& media_type, const std::string& name) {
+    return [=](Call& call) {
+        Response response = handler(call);
+        if (response.status != 200) return response;
+        response.set("Content-Type", media_type);
+        return response.set("Content-Disposition", "attachment; filename=\"" + name + "\"");
+    };
+}
+
 /// Answered at once: while a user types, it is called at each key, and does not wait for computations.
 Response parse_plant(const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
@@ -174,12 +202,18 @@ Response parse_plant(const Call& call) {
 
 }  // namespace
 
-void add_synchronous_routes(http::Router& router, ComputeSlots& turns, Timer& timer, SpareCores& spare_cores,
-                            const std::stop_token& closing) {
+void add_synchronous_routes(http::Router& router, JobService& jobs, ComputeSlots& turns, Timer& timer,
+                            SpareCores& spare_cores, const std::stop_token& closing) {
     const auto add = [&](const char* path, const SyncCall& work, std::chrono::seconds limit,
                          Refusal refuse = refuse_call) {
         router.add("POST", path, synchronous(work, limit, turns, timer, spare_cores, closing, refuse));
     };
+    const auto certificate = [&jobs](const Call& call, const RunControl& control) {
+        return certificate_of(jobs, call, control);
+    };
+    router.add("GET", "/v1/jobs/{id}/controllers/{index}/certificate",
+               as_file(synchronous(certificate, kCertificateTime, turns, timer, spare_cores, closing, no_body),
+                       api::kCertificateMediaType, "certificate.jsonl"));
     router.add("POST", "/v1/plants/parse", parse_plant);
     add("/v1/evaluate", of_body(api::evaluate_call), kEvaluateTime);
     add("/v1/design", of_body(api::design_call), kDesignTime);
@@ -190,6 +224,7 @@ void add_synchronous_routes(http::Router& router, ComputeSlots& turns, Timer& ti
     add("/v1/feedforward", of_body(api::feedforward_call), kStructureTime);
     add("/v1/interaction", of_body(api::interaction_call), kStructureTime);
     add("/v1/predictor", of_body(api::predictor_call), kStructureTime);
+    add("/v1/score", of_body(api::score_call), kScoreTime);
     add("/v1/check", of_body(api::check_call), kCheckTime);
     add("/v1/identify", of_body(api::identify_call), kIdentifyTime);
     add("/v1/records/controller", of_body(api::controller_record_call), kIdentifyTime);

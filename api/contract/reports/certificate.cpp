@@ -1,5 +1,6 @@
 #include "api/contract/reports/reports.h"
 
+#include "api/certificate/write_certificate.h"
 #include "engine/tuning/robust/robust.h"
 
 namespace tunewright::api {
@@ -38,6 +39,7 @@ const Description<CertificateReport>& certificate_contract() {
              "The load IAE of this controller, after a unit step.")
             .field("lower", {}, number(&Certificate::lower), plain, "The proven bound.")
             .field("gap", {}, number(&Certificate::gap), plain, "(upper - lower)/upper.")
+            .field("asked_gap", {}, number(&Certificate::asked_gap), plain, "The gap that was asked for.")
             .field(
                 "complete", {}, [](const R& r, Writer& out) { out.boolean(r.certificate.complete); },
                 [](SchemaBook&) {
@@ -67,6 +69,30 @@ const Description<CertificateReport>& certificate_contract() {
                     return Json{{"type", "integer"}};
                 },
                 "Boxes that the search has visited.")
+            .field(
+                "problem", {},
+                [](const R& r, Writer& out) {
+                    out.begin_object();
+                    write_problem(r.certificate.problem, out);
+                    out.end_object();
+                },
+                [](SchemaBook&) {
+                    const Json one{{"type", "number"}}, several{{"type", "array"}, {"items", one}};
+                    return Json{{"type", "object"},
+                                {"properties",
+                                 {{"plant",
+                                   {{"type", "object"},
+                                    {"properties", {{"num", several}, {"den", several}, {"L", one}}},
+                                    {"required", {"num", "den", "L"}}}},
+                                  {"structure", {{"type", "string"}, {"enum", {"pi", "pid_fixed", "pid_tied"}}}},
+                                  {"Tf", one},
+                                  {"Ms", one},
+                                  {"Mt", one},
+                                  {"upper", one},
+                                  {"design", several}}},
+                                {"required", {"plant", "structure", "Tf", "Ms", "Mt", "upper", "design"}}};
+                },
+                "What is proved, as in the certificate's file: docs/proof.md.")
             .field("seconds", {}, [](const R& r, Writer& out) { out.number(r.seconds); }, plain, "Computing time.",
                    {.unit = "s"});
         return d;

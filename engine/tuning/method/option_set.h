@@ -44,6 +44,7 @@ template <class M>
 constexpr OptionType option_type() {
     if (std::is_same_v<M, int>) return OptionType::integer;
     if (std::is_same_v<M, bool>) return OptionType::boolean;
+    if (std::is_same_v<M, std::string>) return OptionType::text;
     if (std::is_same_v<M, NumberRange>) return OptionType::range;
     if (std::is_same_v<M, std::variant<double, NumberRange>>) return OptionType::number_or_range;
     return std::is_same_v<M, std::map<std::string, double>> ? OptionType::numbers_by_name : OptionType::number;

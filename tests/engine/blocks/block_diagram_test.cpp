@@ -186,6 +186,36 @@ TEST(DiagramResponse, ASignalThatIsOnlyRoundingCostsNoSteps) {
     for (const ResponseNode& node : nodes) EXPECT_NEAR(node.y, 0, 1e-12);
 }
 
+TEST(DiagramResponse, ALoopFarFasterThanTheOthersCostsNoShortSteps) {
+    // The inner loop's dead time is a hundredth of the outer one: once it has settled, steps are far longer than it.
+    for (const auto& [L, longest] : {std::pair{0.02, 2.3}, {0.12, 74.0}, {0.3, 3.0}}) {
+        const structure::CascadePlants plants{first_order(1.5, 25 * L, L), first_order(2, 2 * longest, longest)};
+        const IdealPid inner = pi(6, 8 * L), outer = pi(0.35, 2 * longest);
+        const auto all = structure::cascade_diagram(plants, inner, &outer);
+        ASSERT_TRUE(all && count_unstable_poles(all->diagram).stable());
+        for (const int enters : {all->valve, all->outer_input}) {
+            const auto usual = DiagramResponse::of(all->diagram, {{enters, 1}}, {}),
+                       fine = DiagramResponse::of(all->diagram, {{enters, 1}}, {.tolerance = 1e-9, .settled = 1e-7});
+            ASSERT_TRUE(usual && fine);
+            const auto nodes = usual->pair(all->y1, all->valve, 0).nodes;
+            EXPECT_LT(nodes.size(), 1200u);
+            EXPECT_GT(nodes.back().t, 10 * longest);
+            double largest = 0;
+            std::vector<double> times;
+            for (const ResponseNode& node : nodes) {
+                largest = std::max(largest, std::abs(node.y));
+                times.push_back(node.t);
+            }
+            const auto values = fine->sampled(all->y1, times);
+            for (std::size_t i = 0; i < times.size(); ++i)
+                EXPECT_NEAR(nodes[i].y, values[i], 3e-5 * largest) << times[i];
+            const auto figures = structure::step_figures(all->diagram, enters, all->y1, all->valve, 0);
+            ASSERT_TRUE(figures);
+            EXPECT_NEAR(figures->IE, enters == all->valve ? 0 : -outer.Ti / outer.Kp, 1e-6 * outer.Ti / outer.Kp);
+        }
+    }
+}
+
 TEST(DiagramStability, DirectTermsBehindDeadTimesAreCounted) {
     // C = Kp (1 + 1/(s Ti)) on a pure dead time: 1 + Kp e^(-Ls) has all zeros left of the axis for Kp < 1 alone.
     for (const auto& [Kp, stable] : {std::pair{0.2, true}, {0.45, true}, {0.7, true}, {1.1, false}}) {

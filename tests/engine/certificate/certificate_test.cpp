@@ -163,7 +163,7 @@ TEST(Certificate, DoesNotProveAGoalAboveTheOptimum) {
         problem.upper *= 1.01;
         CertifyOptions options;
         options.gap = 0.005;
-        options.max_boxes = 1500;
+        options.max_boxes = 800;
         const auto proof = certify(problem, options, {});
         ASSERT_TRUE(proof);
         EXPECT_FALSE(proof->complete);

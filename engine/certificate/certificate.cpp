@@ -31,6 +31,7 @@ constexpr int kBatch = 32;
 constexpr int kMaxSigns = 60;
 /// A box of at most this part of the design in k, relative to its own size, may ask for a sign function.
 constexpr double kSmallBox = 0.2;
+constexpr double kNoGain = 1e-2;  ///< k of a design over its unit: below it the design is an integral alone
 constexpr double kGeometric = 8;  ///< a side from l > 0 to more than this multiple of l is split at its geometric mean
 
 struct OpenBox {
@@ -111,9 +112,12 @@ private:
         const auto& problem = data_.problem;
         const double reach =
             options_.reach.value_or(problem.structure == CertifiedStructure::pi ? kReachOfPi : kReachOfPid);
+        // A design with next to no k lies on the edge of the ideal form, whose k and ki have one sign; what lies beyond it
+        // may be better, and is no controller of that form.
+        const bool at_the_edge = std::abs(problem.design[0]) < kNoGain * unit_of_k();
         CertifiedBox box;
-        box.low = {-reach * unit_of_k(), (1 - 1e-9) / data_.goal, 0};
-        box.high = {-box.low[0], std::max(reach * problem.design[1], 1.1 * box.low[1]), reach * problem.design[2]};
+        box.low = {at_the_edge ? 0 : -reach * unit_of_k(), (1 - 1e-9) / data_.goal, 0};
+        box.high = {reach * unit_of_k(), std::max(reach * problem.design[1], 1.1 * box.low[1]), reach * problem.design[2]};
         return box;
     }
 

@@ -16,8 +16,8 @@ Complex response_of(const Feedforward& one, Complex s) {
 }
 
 LinearPlant block_of(const Feedforward& one) {
-    return std::move(*LinearPlant::make(
-        Plant(TransferFunction{.num = {one.Kf * one.Tz, one.Kf}, .den = {one.Tp, 1}, .L = one.Lf})));
+    return std::move(
+        *LinearPlant::make(Plant(TransferFunction{.num = {one.Kf * one.Tz, one.Kf}, .den = {one.Tp, 1}, .L = one.Lf})));
 }
 
 bool is_gain(const Feedforward& one) { return one.Tz == 0 && one.Tp == 0 && one.Lf == 0; }
@@ -46,7 +46,8 @@ void add_decoupler(BlockDiagram& blocks, const Decoupling& elements, unsigned cl
         for (std::size_t j = 0; j < left.size(); ++j)
             if (((closed >> i) & (closed >> j) & 1u) == 0) left[i][j].reset();
     const bool of_gains = has_gains_alone(left);
-    const LoopMatrix D = of_gains ? decoupler_response(left, 0) : LoopMatrix(LoopMatrix::Identity(Index(left.size()), Index(left.size())));
+    const LoopMatrix D = of_gains ? decoupler_response(left, 0)
+                                  : LoopMatrix(LoopMatrix::Identity(Index(left.size()), Index(left.size())));
     for (std::size_t i = 0; i < left.size(); ++i)
         for (std::size_t j = 0; j < left.size(); ++j) {
             if (D(Index(i), Index(j)) != 0.0) blocks.add(from[j], to[i], D(Index(i), Index(j)).real());

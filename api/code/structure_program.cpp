@@ -41,6 +41,19 @@ Feedforward compensator_of(const Json& compensator, const Source& s) {
             .Lf = s.seconds(compensator.at("Lf"))};
 }
 
+/// Empty without a decoupler.
+structure::Decoupling decoupling_of(const Source& s) {
+    const Json decoupling = s.answer.value("decoupling", Json());
+    structure::Decoupling out;
+    if (!decoupling.is_object()) return out;
+    for (const Json& row : decoupling.at("D")) {
+        out.emplace_back();
+        for (const Json& element : row)
+            out.back().push_back(element.is_object() ? std::optional(compensator_of(element, s)) : std::nullopt);
+    }
+    return out;
+}
+
 /// Coefficients of a fraction of s in seconds.
 structure::Rational rational_of(const Json& fraction, double unit) {
     const auto in_seconds = [unit](std::vector<double> coefficients) {
@@ -125,7 +138,7 @@ Expected<code::Program> program_of(const Source& s) {
     }
     std::vector<SampledPid> laws;
     for (std::size_t k = 0; k < s.controllers.size(); ++k) laws.push_back(s.law(k));
-    return structure::interaction_program(laws, std::vector(laws.size(), s.options()));
+    return structure::interaction_program(laws, std::vector(laws.size(), s.options()), decoupling_of(s));
 }
 
 /// The controller that needs the shortest sample time.
@@ -136,7 +149,8 @@ ParallelPid fastest(const AskedCode& asked, const std::vector<ParallelPid>& cont
     return law_of(asked, *std::ranges::min_element(controllers, {}, proposed)).gains;
 }
 
-/// Shortest lag of the compensator, or of the filter of the prediction's error, in seconds; infinite if there is none.
+/// Shortest lag of the compensator or of the decoupler, or of the filter of the prediction's error, in seconds;
+/// infinite if there is none.
 double shortest_lag(const Json& answer, const AskedCode& asked) {
     const std::string structure = answer.at("structure");
     double out = std::numeric_limits<double>::infinity();
@@ -145,6 +159,11 @@ double shortest_lag(const Json& answer, const AskedCode& asked) {
         const double lag = compensator == nullptr ? 0 : compensator->at("Tp").get<double>() * asked.unit;
         if (lag > 0) out = lag;
     }
+    if (const Json::json_pointer elements("/decoupling/D"); answer.contains(elements))
+        for (const Json& row : answer.at(elements))
+            for (const Json& element : row)
+                if (const double lag = element.is_object() ? element.at("Tp").get<double>() * asked.unit : 0; lag > 0)
+                    out = std::min(out, lag);
     if (structure == "predictor")
         for (const auto& pole : polynomial_roots(predictor_of(answer, asked.unit).F.den))
             if (pole != 0.0) out = std::min(out, 1 / std::abs(pole));

@@ -52,8 +52,9 @@ std::variant<ScoreAnswer, Problem> of_settings(const ScoreRequest& request, cons
     std::vector<score::Problem> problems;
     for (const score::Problem& problem : problem_library())
         if (request.problems.admits(problem) && given.contains(problem.name)) problems.push_back(problem);
-    return scored(problems, request.name.value_or("settings"),
-                  [&given](const score::Problem& problem) { return given.at(problem.name); }, control);
+    return scored(
+        problems, request.name.value_or("settings"),
+        [&given](const score::Problem& problem) { return given.at(problem.name); }, control);
 }
 
 /// A number if the text is one; else the text, which the contract then refuses.

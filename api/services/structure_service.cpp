@@ -1,6 +1,8 @@
 #include "api/services/structure_service.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -18,6 +20,8 @@ namespace {
 
 using structure::CascadeControllers;
 using structure::CascadeResult;
+
+constexpr const char* kNothingDesigned = "Nothing was designed.";
 
 Error stopped() { return {ErrorKind::cancelled, "", "The design was stopped."}; }
 
@@ -186,17 +190,170 @@ std::size_t chosen_pairing(const structure::GainAnalysis& gains, const Interacti
                        gains.pairings.begin());
 }
 
+/// What the controllers of a request are designed and judged with.
+struct InteractionTask {
+    const InteractionRequest& request;
+    const structure::PlantMatrix& plants;
+    const RunControl& control;
+
+    bool designs() const { return request.controllers.given.empty(); }
+    Expected<structure::InteractionResult> design(const structure::Decoupling& decoupling) const {
+        return structure::design_interaction(plants,
+                                             {.derivative = request.controllers.kind == ControllerKind::PID,
+                                              .mu = request.limit.mu,
+                                              .weight = request.weights.y,
+                                              .decoupling = decoupling},
+                                             control);
+    }
+};
+
 /// The figures of controllers for comparison, or the reason why there are none.
 Expected<ComparedControllers> compared(const char* name, std::vector<IdealPid> controllers, std::string why,
-                                       const structure::PlantMatrix& plants, const InteractionRequest& request) {
+                                       const InteractionTask& task) {
     ComparedControllers out{
         .name = name, .controllers = std::move(controllers), .figures = {}, .cost = {}, .why = std::move(why)};
     if (out.controllers.empty()) return out;
-    auto figures = structure::judge_interaction(plants, out.controllers);
+    auto figures = structure::judge_interaction(task.plants, out.controllers);
     if (!figures) return Error{figures.error().kind, name, figures.error().message};
     out.figures = std::move(*figures);
-    out.cost = cost_of(out.figures, request);
+    out.cost = cost_of(out.figures, task.request);
     return out;
+}
+
+/// `cost`: of stable loops with the decoupler, else empty.
+DecouplingView decoupling_view(structure::Decoupler decoupler, const std::vector<IdealPid>& controllers,
+                               const Figure& cost, const Figure& cost_without, const InteractionTask& task) {
+    DecouplingView out{.decoupler = std::move(decoupler), .gain = cost_without, .wrong = {}};
+    if (cost_without) out.gain = cost ? Figure(*cost_without / *cost) : Figure();
+    out.wrong = structure::with_wrong_gains(task.plants, controllers, out.decoupler.elements);
+    return out;
+}
+
+/// Controllers that are designed with a decoupler, or the reason why there are none.
+Expected<ComparedControllers> compared_decoupler(const std::string& name, const Figure& cost_without,
+                                                 const InteractionTask& task) {
+    using enum structure::DecouplerKind;
+    ComparedControllers out{.name = name, .controllers = {}, .figures = {}, .cost = {}, .why = {}};
+    auto decoupler = structure::design_decoupler(task.plants, name == "static_decoupler" ? static_gains : simplified);
+    if (!task.designs() || !decoupler) {
+        out.why = task.designs() ? decoupler.error().message : kNothingDesigned;
+        return out;
+    }
+    auto result = task.design(decoupler->elements);
+    if (!result && result.error().kind == ErrorKind::cancelled) return result.error();
+    if (!result) {
+        out.why = result.error().message;
+        return out;
+    }
+    if (result->partial) return stopped();
+    out.controllers = std::move(result->controllers);
+    out.figures = std::move(result->figures);
+    out.cost = cost_of(out.figures, task.request);
+    out.decoupling = decoupling_view(std::move(*decoupler), out.controllers, out.cost, cost_without, task);
+    return out;
+}
+
+/// The design without a decoupler, with what is compared with it.
+struct PlainDesign {
+    OrReason<structure::InteractionResult> result = {std::nullopt, kNothingDesigned};
+    OrReason<structure::BltSettings> blt = {std::nullopt, kNothingDesigned};
+    Figure cost = no_figure(kNothingDesigned);
+};
+
+/// It fails only if it is the design that was asked for, or was stopped.
+Expected<PlainDesign> plain_design(const InteractionTask& task) {
+    PlainDesign out;
+    if (!task.designs()) return out;
+    auto result = task.design({});
+    if (!result &&
+        (task.request.decoupler == structure::DecouplerKind::none || result.error().kind == ErrorKind::cancelled))
+        return result.error();
+    if (!result) {
+        const std::string& why = result.error().message;
+        return PlainDesign{{std::nullopt, why}, {std::nullopt, why}, no_figure(why)};
+    }
+    out.cost = cost_of(result->figures, task.request);
+    out.blt = result->blt;
+    out.result = std::move(*result);
+    return out;
+}
+
+/// The controllers of the answer, designed or given, with their figures.
+std::optional<Error> add_controllers(const PlainDesign& plain, const InteractionTask& task, InteractionAnswer& out) {
+    auto decoupler = structure::design_decoupler(task.plants, task.request.decoupler);
+    if (!decoupler) return decoupler.error();
+    const bool decoupled = decoupler->kind != structure::DecouplerKind::none;
+    if (task.designs()) {
+        auto result =
+            decoupled ? task.design(decoupler->elements) : Expected<structure::InteractionResult>(*plain.result);
+        if (!result) return result.error();
+        out.partial = result->partial || (plain.result && plain.result->partial);
+        out.controllers = std::move(result->controllers);
+        out.figures = std::move(result->figures);
+    } else {
+        out.controllers = known(task.request.controllers.given);
+        auto figures = structure::judge_interaction(task.plants, out.controllers, decoupler->elements);
+        if (!figures) return figures.error();
+        out.figures = std::move(*figures);
+    }
+    out.cost = cost_of(out.figures, task.request);
+    if (decoupled) out.decoupling = decoupling_view(std::move(*decoupler), out.controllers, out.cost, plain.cost, task);
+    return std::nullopt;
+}
+
+/// What the request compares with.
+std::optional<Error> add_compared(const PlainDesign& plain, const InteractionTask& task, InteractionAnswer& out) {
+    const auto add = [&](Expected<ComparedControllers> one) -> std::optional<Error> {
+        if (!one) return one.error();
+        out.compared.push_back(std::move(*one));
+        return std::nullopt;
+    };
+    if (task.designs() && out.decoupling) {
+        ComparedControllers without{
+            .name = "no_decoupler", .controllers = {}, .figures = {}, .cost = {}, .why = plain.result.why};
+        if (plain.result) {
+            without.controllers = plain.result->controllers;
+            without.figures = plain.result->figures;
+            without.cost = plain.cost;
+        }
+        out.compared.push_back(std::move(without));
+    }
+    for (const std::string& name : task.request.compare) {
+        std::optional<Error> error;
+        if (name == "blt")
+            error =
+                add(compared("blt", plain.blt ? plain.blt->controllers : std::vector<IdealPid>{}, plain.blt.why, task));
+        else if (name == "detuned")
+            error = add(compared("detuned", plain.result ? plain.result->detuned : std::vector<IdealPid>{},
+                                 !plain.result                   ? plain.result.why
+                                 : plain.result->detuned.empty() ? "None keeps the limit."
+                                                                 : "",
+                                 task));
+        else
+            error = add(compared_decoupler(name, plain.cost, task));
+        if (error) return error;
+    }
+    if (!task.request.baseline) return std::nullopt;
+    return add(compared("baseline", known(task.request.baseline->given), "", task));
+}
+
+/// Those about the decoupler of the answer, or about the best of those that were compared.
+void add_decoupler_conclusions(InteractionAnswer& out) {
+    const DecouplingView* view = out.decoupling ? &*out.decoupling : nullptr;
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    double cost = out.cost.value_or(kUnknown), mu = out.figures.mu;
+    for (const ComparedControllers& other : out.compared) {
+        const double its = other.cost.value_or(kUnknown);
+        if (out.decoupling || !other.decoupling || (view != nullptr && its >= cost)) continue;
+        view = &*other.decoupling;
+        cost = its;
+        mu = other.figures.mu;
+    }
+    if (view == nullptr || (out.decoupling && !out.figures.stable)) return;
+    double largest = 0;
+    for (const auto& row : out.gains.relative)
+        for (const double one : row) largest = std::max(largest, std::abs(one));
+    std::ranges::move(conclusions_on_decoupler(view->gain, mu, view->wrong, largest), std::back_inserter(out.verdict));
 }
 
 Expected<InteractionAnswer> answered(const InteractionRequest& request, const RunControl& control) {
@@ -206,52 +363,23 @@ Expected<InteractionAnswer> answered(const InteractionRequest& request, const Ru
     out.gains = std::move(*gains);
     out.chosen = chosen_pairing(out.gains, request);
     const auto plants = structure::paired(request.plant, out.gains.pairings[out.chosen].input_of);
-    OrReason<structure::BltSettings> blt;
-    std::vector<IdealPid> detuned;
-    if (request.controllers.given.empty()) {
-        auto result = structure::design_interaction(plants,
-                                                    {.derivative = request.controllers.kind == ControllerKind::PID,
-                                                     .mu = request.limit.mu,
-                                                     .weight = request.weights.y},
-                                                    control);
-        if (!result) return result.error();
-        out.partial = result->partial;
-        out.controllers = std::move(result->controllers);
-        out.figures = std::move(result->figures);
-        blt = std::move(result->blt);
-        detuned = std::move(result->detuned);
-    } else {
-        out.controllers = known(request.controllers.given);
-        auto figures = structure::judge_interaction(plants, out.controllers);
-        if (!figures) return figures.error();
-        out.figures = std::move(*figures);
-        blt.why = "Nothing was designed.";
-    }
-    out.cost = cost_of(out.figures, request);
-    out.F = blt ? Figure(blt->F) : no_figure(blt.why);
-    double blt_cost = std::numeric_limits<double>::infinity();
-    for (const std::string& name : request.compare) {
-        const bool is_blt = name == "blt";
-        auto one =
-            compared(is_blt ? "blt" : "detuned", is_blt ? (blt ? blt->controllers : std::vector<IdealPid>{}) : detuned,
-                     is_blt            ? blt.why
-                     : detuned.empty() ? "None keeps the limit."
-                                       : "",
-                     plants, request);
-        if (!one) return one.error();
-        if (is_blt) blt_cost = one->cost.value_or(blt_cost);
-        out.compared.push_back(std::move(*one));
-    }
-    if (request.baseline) {
-        auto today = compared("baseline", known(request.baseline->given), "", plants, request);
-        if (!today) return today.error();
-        out.compared.push_back(std::move(*today));
-    }
-    out.verdict = conclusions_on(out.figures, out.gains, out.chosen, request.limit.mu,
-                                 out.cost.value_or(std::numeric_limits<double>::infinity()), blt_cost);
-    structure::NamedControllers all{{"design", out.controllers}};
+    const InteractionTask task{request, plants, control};
+    const auto plain = plain_design(task);
+    if (!plain) return plain.error();
+    if (auto error = add_controllers(*plain, task, out)) return *error;
+    if (auto error = add_compared(*plain, task, out)) return *error;
+    out.F = plain->blt ? Figure(plain->blt->F) : no_figure(plain->blt.why);
+    const auto blt = std::ranges::find(out.compared, "blt", &ComparedControllers::name);
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    out.verdict = conclusions_on(out.figures, out.gains, out.chosen, request.limit.mu, out.cost.value_or(kUnknown),
+                                 blt != out.compared.end() ? blt->cost.value_or(kUnknown) : kUnknown);
+    add_decoupler_conclusions(out);
+    const auto elements = [](const std::optional<DecouplingView>& view) {
+        return view ? view->decoupler.elements : structure::Decoupling{};
+    };
+    std::vector<structure::NamedControllers> all{{"design", out.controllers, elements(out.decoupling)}};
     for (const ComparedControllers& other : out.compared)
-        if (!other.controllers.empty()) all.emplace_back(other.name, other.controllers);
+        if (!other.controllers.empty()) all.push_back({other.name, other.controllers, elements(other.decoupling)});
     out.drawing = structure::draw(plants, all, request.limit.mu, request.points);
     for (std::size_t i = 0; i < out.controllers.size(); ++i)
         add_settings(request, "loop_" + std::to_string(i + 1), i, out.controllers[i], out);

@@ -112,12 +112,13 @@ private:
         const auto& problem = data_.problem;
         const double reach =
             options_.reach.value_or(problem.structure == CertifiedStructure::pi ? kReachOfPi : kReachOfPid);
-        // A design with next to no k lies on the edge of the ideal form, whose k and ki have one sign; what lies beyond it
-        // may be better, and is no controller of that form.
+        // A design with next to no k lies on the edge of the ideal form, whose k and ki have one sign; what lies beyond
+        // it may be better, and is no controller of that form.
         const bool at_the_edge = std::abs(problem.design[0]) < kNoGain * unit_of_k();
         CertifiedBox box;
         box.low = {at_the_edge ? 0 : -reach * unit_of_k(), (1 - 1e-9) / data_.goal, 0};
-        box.high = {reach * unit_of_k(), std::max(reach * problem.design[1], 1.1 * box.low[1]), reach * problem.design[2]};
+        box.high = {reach * unit_of_k(), std::max(reach * problem.design[1], 1.1 * box.low[1]),
+                    reach * problem.design[2]};
         return box;
     }
 

@@ -135,8 +135,7 @@ Expected<Score> score(const std::vector<Problem>& problems, const SettingsFor& s
     Score out;
     out.problems.resize(problems.size());
     parallel_for(control.spread, int(problems.size()), [&](int i) {
-        if (!control.stop.stop_requested())
-            out.problems[std::size_t(i)] = score_of(problems[std::size_t(i)], settings);
+        if (!control.stop.stop_requested()) out.problems[std::size_t(i)] = score_of(problems[std::size_t(i)], settings);
     });
     if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The scoring was stopped."};
     count(out);

@@ -37,10 +37,10 @@ const char* to_string(Status status);
 struct ProblemScore {
     std::string name;
     Status status = Status::no_settings;
-    double tau = 0;        ///< L/(L + T) of the plant's first-order reduction; 0 with an integrator
-    IdealPid controller;   ///< with the problem's filter
+    double tau = 0;                  ///< L/(L + T) of the plant's first-order reduction; 0 with an integrator
+    IdealPid controller;             ///< with the problem's filter
     double Ms = 0, Mt = 0, IAE = 0;  ///< of a stable loop; Ms and Mt of the problem are in it
-    double ratio = 0;      ///< of `kept`
+    double ratio = 0;                ///< of `kept`
     std::string why;
 };
 

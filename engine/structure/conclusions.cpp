@@ -16,6 +16,8 @@ constexpr double kNearLowestRate = 1.1;     // largest rate of the outflow over 
 constexpr double kAsWell = 1.02;            // IAE of the PID over that of the predictor
 constexpr double kMinWindow = 0.25;         // of the dead time: how well it is known at best in a plant
 constexpr double kHardlyInteracting = 0.1;  // |relative gain - 1|, at steady state and near the crossovers
+constexpr double kDecouplerHelps = 1.1;     // cost without over cost with the decoupler
+constexpr double kFragileMu = 1.5;          // mu with a wrong gain over mu
 constexpr double kMuchBetterPairing = 0.5;  // distance of the better pairing over that of the chosen one
 
 struct CodeName {
@@ -52,6 +54,9 @@ constexpr CodeName kNames[] = {
     {mu_above, "mu-above"},
     {subsets_unstable, "subsets-unstable"},
     {better_than_blt, "better-than-blt"},
+    {decoupler_helps, "decoupler-helps"},
+    {decoupler_worse_than_none, "decoupler-worse-than-none"},
+    {decoupler_fragile, "decoupler-fragile"},
 };
 
 bool above(double peak, double limit) { return peak > limit * (1 + limits::kMaxRelativeExcessShown); }
@@ -197,6 +202,18 @@ Conclusions conclusions_on(const InteractionFigures& figures, const GainAnalysis
     if (!figures.unstable_subsets.empty())
         out.push_back({subsets_unstable, {{"count", double(figures.unstable_subsets.size())}}});
     if (std::isfinite(blt_cost) && blt_cost > cost) out.push_back({better_than_blt, {{"gain", blt_cost / cost}}});
+    return out;
+}
+
+Conclusions conclusions_on_decoupler(const Figure& gain, double mu, const WrongGains& wrong, double relative_gain) {
+    Conclusions out;
+    if (gain && *gain >= kDecouplerHelps) out.push_back({decoupler_helps, {{"gain", *gain}}});
+    if (gain && *gain < 1) out.push_back({decoupler_worse_than_none, {{"gain", *gain}}});
+    // A path's gain that is wrong by the share 1/relative gain makes the plant singular.
+    if (!wrong.mu || *wrong.mu > kFragileMu * mu || relative_gain >= 1 / wrong.by) {
+        out.push_back({decoupler_fragile, {{"wrong", wrong.by}, {"relative_gain", relative_gain}}});
+        if (wrong.mu) out.back().figures["mu"] = *wrong.mu;
+    }
     return out;
 }
 

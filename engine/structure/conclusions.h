@@ -50,6 +50,10 @@ enum class ConclusionCode {
     mu_above,            ///< `mu` exceeds `limit`
     subsets_unstable,    ///< `count` sets of loops are not stable with the others in manual
     better_than_blt,     ///< cost: `gain` times less than with the BLT settings
+
+    decoupler_helps,            ///< cost at the same limit: `gain` times less than without
+    decoupler_worse_than_none,  ///< `gain` is below 1
+    decoupler_fragile,  ///< `mu`, or nothing stable, if the gain of a path is wrong by `wrong`; or `relative_gain`
 };
 
 /// The code's name: "cascade-pays".
@@ -73,5 +77,8 @@ Conclusions conclusions_on(const PredictorFigures& figures, const Figure& pid_IA
 /// infinite if it is not known.
 Conclusions conclusions_on(const InteractionFigures& figures, const GainAnalysis& gains, std::size_t chosen, double mu,
                            double cost, double blt_cost);
+
+/// `gain`: cost without the decoupler over cost with it, empty if it is not known; `relative_gain`: the largest.
+Conclusions conclusions_on_decoupler(const Figure& gain, double mu, const WrongGains& wrong, double relative_gain);
 
 }  // namespace tunewright::structure

@@ -50,13 +50,6 @@ Expected<Diagram> diagram_of(const LinearPlant& plant, const LinearPlant& distur
     return out;
 }
 
-LinearPlant changed(const LinearPlant& plant, double gain, double dead_time) {
-    Zpk out = factors_of(plant);
-    out.K *= gain;
-    out.L *= dead_time;
-    return std::move(*LinearPlant::make(Plant(out)));
-}
-
 double IAE_of(const FeedforwardProblem& problem, const Feedforward& f) {
     const auto diagram = diagram_of(problem.plant, problem.disturbance, problem.feedback, f);
     return diagram ? quick_IAE(diagram->blocks, diagram->d, diagram->y, 0) : kInfinity;

@@ -16,6 +16,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/number_text.h"
 #include "engine/numerics/optimise/line_search.h"
+#include "engine/structure/decoupling/decoupler_blocks.h"
 #include "engine/structure/drawing/view.h"
 #include "engine/structure/interaction_gains.h"
 #include "engine/structure/limited_search.h"
@@ -30,8 +31,6 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
-/// On the stack: two or three rows.
-using Response = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
 using Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -49,17 +48,28 @@ constexpr int kFirstIterations = 8;   // of every start, before the hopeless one
 constexpr double kHopeless = 0.3;     // ln of cost behind the best start then
 constexpr double kSameValley = 0.02;  // ln of every setting between two starts then
 
+/// The plants behind their decoupler, if there is one.
+struct DecoupledPlants {
+    const PlantMatrix& plants;
+    const Decoupling& decoupling;
+
+    std::size_t size() const { return plants.size(); }
+    unsigned all_loops() const { return (1u << size()) - 1; }
+};
+
 /// The loops of `closed`, of those there are.
 struct LoopsDiagram {
     BlockDiagram blocks;
     std::vector<int> y, u, r;  ///< r: the controller's error; -1 for a loop in manual
+    std::vector<int> load;     ///< where loads enter: u, or what the decoupler does not see
 };
 
 /// Plants of loops in manual are outside every loop and left out: their integrators and unstable poles are not the
 /// loops'.
-Expected<LoopsDiagram> diagram_of(const PlantMatrix& plants, const std::vector<IdealPid>& controllers,
+Expected<LoopsDiagram> diagram_of(const DecoupledPlants& loops, const std::vector<IdealPid>& controllers,
                                   unsigned closed) {
     LoopsDiagram out;
+    const PlantMatrix& plants = loops.plants;
     const std::size_t n = plants.size();
     const auto is_closed = [closed](std::size_t i) { return ((closed >> i) & 1u) != 0; };
     for (std::size_t i = 0; i < n; ++i) out.y.push_back(out.blocks.add_signal());
@@ -74,49 +84,59 @@ Expected<LoopsDiagram> diagram_of(const PlantMatrix& plants, const std::vector<I
         out.u.push_back(pid->output);
         out.r.push_back(pid->error);
     }
+    if (!loops.decoupling.empty()) {
+        const std::vector<int> from = out.u;
+        for (int& u : out.u) u = out.blocks.add_signal();
+        add_decoupler(out.blocks, loops.decoupling, closed, from, out.u);
+    }
+    for (const int u : out.u) {
+        out.load.push_back(loops.decoupling.empty() ? u : out.blocks.add_signal());
+        if (!loops.decoupling.empty()) out.blocks.add(u, out.load.back(), 1);
+    }
     for (std::size_t i = 0; i < n; ++i) {
         std::vector<std::pair<int, const LinearPlant*>> row;
         for (std::size_t j = 0; j < n; ++j)
-            if (plants[i][j] && is_closed(i) && is_closed(j)) row.emplace_back(out.u[j], &*plants[i][j]);
+            if (plants[i][j] && is_closed(i) && is_closed(j)) row.emplace_back(out.load[j], &*plants[i][j]);
         add_row(out.blocks, row, out.y[i]);
     }
     return out;
 }
 
-/// P(j omega), computed once at the frequencies of a grid, which a search visits again and again.
+/// P(j omega) D(j omega), computed once at the frequencies of a grid, which a search visits again and again.
 class PlantResponses {
 public:
-    PlantResponses(const PlantMatrix& plants, std::vector<double> grid) : plants_(plants), omega_(std::move(grid)) {
+    PlantResponses(const DecoupledPlants& loops, std::vector<double> grid) : loops_(loops), omega_(std::move(grid)) {
         for (const double omega : omega_) on_grid_.push_back(computed(omega));
     }
 
     const std::vector<double>& grid() const { return omega_; }
 
-    Response at(double omega) const {
+    LoopMatrix at(double omega) const {
         const auto found = std::ranges::lower_bound(omega_, omega);
         return found != omega_.end() && *found == omega ? on_grid_[std::size_t(found - omega_.begin())]
                                                         : computed(omega);
     }
 
 private:
-    Response computed(double omega) const {
-        const auto n = Index(plants_.size());
-        Response out = Response::Zero(n, n);
+    LoopMatrix computed(double omega) const {
+        const auto n = Index(loops_.size());
+        LoopMatrix out = LoopMatrix::Zero(n, n);
         for (Index i = 0; i < n; ++i)
             for (Index j = 0; j < n; ++j)
-                if (const auto& plant = plants_[std::size_t(i)][std::size_t(j)])
+                if (const auto& plant = loops_.plants[std::size_t(i)][std::size_t(j)])
                     out(i, j) = plant->at(Complex(0, omega));
+        if (!loops_.decoupling.empty()) out *= decoupler_response(loops_.decoupling, Complex(0, omega));
         return out;
     }
 
-    const PlantMatrix& plants_;
+    const DecoupledPlants loops_;
     std::vector<double> omega_;
-    std::vector<Response> on_grid_;
+    std::vector<LoopMatrix> on_grid_;
 };
 
 /// The sensitivity at the outputs: what enters at y_j, seen at y_i.
-Response sensitivity(const PlantResponses& plants, const std::vector<ParallelPid>& controllers, double omega) {
-    Response A = plants.at(omega);
+LoopMatrix sensitivity(const PlantResponses& plants, const std::vector<ParallelPid>& controllers, double omega) {
+    LoopMatrix A = plants.at(omega);
     for (Index j = 0; j < A.cols(); ++j)
         A.col(j) *= controller_response(controllers[std::size_t(j)], Complex(0, omega));
     A.diagonal().array() += 1;
@@ -135,11 +155,18 @@ struct Fineness {
 };
 constexpr Fineness kSearched{30, 0.7}, kJudged{200, 0.2};
 
-std::vector<double> grid_of(const PlantMatrix& plants, const Fineness& fineness) {
+std::vector<double> grid_of(const DecoupledPlants& loops, const Fineness& fineness) {
     std::vector<const LinearPlant*> paths;
-    for (const auto& row : plants)
+    for (const auto& row : loops.plants)
         for (const auto& plant : row)
             if (plant) paths.push_back(&*plant);
+    // What the decoupler adds up turns once around its own loop.
+    double delay = 0;
+    for (const auto& row : loops.decoupling)
+        for (const auto& element : row)
+            if (element) delay += element->Lf;
+    const LinearPlant around = *LinearPlant::make(Plant(Fopdt{.K = 1, .T = 0, .L = delay}));
+    if (delay > 0) paths.push_back(&around);
     return frequencies_around(paths, kBelow, kAbove, fineness.per_decade, fineness.turn);
 }
 
@@ -175,13 +202,11 @@ double log_modulus(const PlantResponses& plants, const std::vector<IdealPid>& co
     return 20 * most / std::numbers::ln10;
 }
 
-bool stable_with(const PlantMatrix& plants, const std::vector<IdealPid>& controllers, unsigned closed) {
-    const auto diagram = diagram_of(plants, controllers, closed);
+bool stable_with(const DecoupledPlants& loops, const std::vector<IdealPid>& controllers, unsigned closed) {
+    const auto diagram = diagram_of(loops, controllers, closed);
     if (!diagram) return false;
     return count_unstable_poles(diagram->blocks).stable();
 }
-
-unsigned all_loops(const PlantMatrix& plants) { return (1u << plants.size()) - 1; }
 
 /// Settings in logarithms, with the signs and filters of a start.
 class Settings {
@@ -220,15 +245,15 @@ private:
 struct Grids {
     PlantResponses searched, judged;
 
-    explicit Grids(const PlantMatrix& plants)
-        : searched(plants, grid_of(plants, kSearched)), judged(plants, grid_of(plants, kJudged)) {}
+    explicit Grids(const DecoupledPlants& loops)
+        : searched(loops, grid_of(loops, kSearched)), judged(loops, grid_of(loops, kJudged)) {}
 };
 
 class InteractionSearch {
 public:
-    InteractionSearch(const PlantMatrix& plants, const Grids& grids, const InteractionDesign& design,
+    InteractionSearch(const DecoupledPlants& loops, const Grids& grids, const InteractionDesign& design,
                       const std::vector<IdealPid>& start)
-        : plants_(&plants), grids_(&grids), design_(&design), settings_(start) {}
+        : loops_(&loops), grids_(&grids), design_(&design), settings_(start) {}
 
     LimitedResult run(const VectorXd& from, const LimitedOptions& options) const {
         LimitedProblem problem;
@@ -266,15 +291,15 @@ private:
     }
 
     bool all_subsets_stable(const std::vector<IdealPid>& controllers) const {
-        for (unsigned closed = all_loops(*plants_); closed > 0; --closed)
-            if (!stable_with(*plants_, controllers, closed)) return false;
+        for (unsigned closed = loops_->all_loops(); closed > 0; --closed)
+            if (!stable_with(*loops_, controllers, closed)) return false;
         return true;
     }
 
     double log_cost(const std::vector<IdealPid>& controllers) const {
-        const auto diagram = diagram_of(*plants_, controllers, all_loops(*plants_));
+        const auto diagram = diagram_of(*loops_, controllers, loops_->all_loops());
         double sum = 0;
-        for (const int load : diagram->u) sum += weighted_IAE(diagram->blocks, load, diagram->y);
+        for (const int load : diagram->load) sum += weighted_IAE(diagram->blocks, load, diagram->y);
         return std::log(sum);
     }
 
@@ -285,7 +310,7 @@ private:
         return sum;
     }
 
-    const PlantMatrix* plants_;
+    const DecoupledPlants* loops_;
     const Grids* grids_;
     const InteractionDesign* design_;
     Settings settings_;
@@ -301,7 +326,7 @@ std::vector<IdealPid> with_kind(std::vector<IdealPid> controllers, bool derivati
 }
 
 /// Weaker and weaker until mu holds; empty: never.
-std::optional<std::vector<IdealPid>> detuned(const PlantMatrix& plants, const PlantResponses& responses,
+std::optional<std::vector<IdealPid>> detuned(const DecoupledPlants& loops, const PlantResponses& responses,
                                              std::vector<IdealPid> controllers, double mu) {
     const auto at_full = controllers;
     for (const double weaker : kWeaker) {
@@ -309,7 +334,7 @@ std::optional<std::vector<IdealPid>> detuned(const PlantMatrix& plants, const Pl
             controllers[i].Kp = weaker * at_full[i].Kp;
             controllers[i].Ti = at_full[i].Ti / std::sqrt(weaker);
         }
-        if (!stable_with(plants, controllers, all_loops(plants))) continue;
+        if (!stable_with(loops, controllers, loops.all_loops())) continue;
         if (mu_peak(responses, controllers, least_of(mu)).value <= mu) return controllers;
     }
     return std::nullopt;
@@ -349,15 +374,15 @@ struct Valley {
 
 /// A few steps from every start; then to the end from those that are not far behind the best and not in the valley of a
 /// better one.
-std::vector<Valley> searched_valleys(const PlantMatrix& plants, const Grids& grids, const InteractionDesign& design,
+std::vector<Valley> searched_valleys(const DecoupledPlants& loops, const Grids& grids, const InteractionDesign& design,
                                      const std::vector<IdealPid>& single, const RunControl& control) {
     const auto starts = starts_of(single);
     std::vector<std::optional<Valley>> first(starts.size());
     parallel_for(control.spread, int(starts.size()), [&](int i) {
-        const auto start = detuned(plants, grids.searched, with_kind(starts[std::size_t(i)], design.derivative),
+        const auto start = detuned(loops, grids.searched, with_kind(starts[std::size_t(i)], design.derivative),
                                    kStartAbove * design.mu);
         if (!start) return;
-        const InteractionSearch search(plants, grids, design, *start);
+        const InteractionSearch search(loops, grids, design, *start);
         const LimitedOptions few{.max_iterations = kFirstIterations, .max_rounds = 1, .stop = control.stop};
         first[std::size_t(i)] = Valley{search, search.run(search.start(), few)};
     });
@@ -419,27 +444,29 @@ std::optional<Error> impossible_pairing(const PlantMatrix& plants, const GainAna
 
 }  // namespace
 
-Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const std::vector<IdealPid>& controllers) {
+Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const std::vector<IdealPid>& controllers,
+                                               const Decoupling& decoupling) {
     if (auto error = without_diagonal(plants)) return *error;
+    const DecoupledPlants loops{plants, decoupling};
     const auto n = Index(plants.size());
-    const auto diagram = diagram_of(plants, controllers, all_loops(plants));
+    const auto diagram = diagram_of(loops, controllers, loops.all_loops());
     if (!diagram) return diagram.error();
     InteractionFigures out;
-    for (unsigned closed = 1; closed <= all_loops(plants); ++closed) {
-        if (stable_with(plants, controllers, closed)) continue;
-        std::vector<int> loops;
+    for (unsigned closed = 1; closed <= loops.all_loops(); ++closed) {
+        if (stable_with(loops, controllers, closed)) continue;
+        std::vector<int> unstable;
         for (int i = 0; i < int(n); ++i)
-            if (((closed >> i) & 1u) != 0) loops.push_back(i);
-        out.unstable_subsets.push_back(std::move(loops));
+            if (((closed >> i) & 1u) != 0) unstable.push_back(i);
+        out.unstable_subsets.push_back(std::move(unstable));
     }
     for (unsigned i = 0; i < plants.size(); ++i)
-        out.may_open.push_back(stable_with(plants, controllers, all_loops(plants) & ~(1u << i)));
-    out.stable = stable_with(plants, controllers, all_loops(plants));
+        out.may_open.push_back(stable_with(loops, controllers, loops.all_loops() & ~(1u << i)));
+    out.stable = stable_with(loops, controllers, loops.all_loops());
     if (!out.stable) return out;
     out.IAE_setpoint = out.IAE_load = Table(std::size_t(n), std::vector<double>(std::size_t(n)));
     for (Index i = 0; i < n; ++i) {
         const auto k = std::size_t(i);
-        const DiagramLoop closed(diagram->blocks, diagram->u[k]);
+        const DiagramLoop closed(diagram->blocks, diagram->y[k]);
         out.Ms_others_closed.push_back(find_peaks(closed, make_peak_grid(closed)).S.value);
         const auto own = Loop::make(*plants[k][k], to_parallel(controllers[k]));
         const auto alone = stable_peaks(own);
@@ -451,7 +478,7 @@ Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const 
             after_load.push_back({diagram->y[i], diagram->u[i], 0});
             after_setpoint.push_back({diagram->y[i], diagram->u[i], i == j ? 1.0 : 0.0});
         }
-        const auto load = step_figures(diagram->blocks, diagram->u[j], after_load),
+        const auto load = step_figures(diagram->blocks, diagram->load[j], after_load),
                    moved = step_figures(diagram->blocks, diagram->r[j], after_setpoint);
         if (!load) return load.error();
         if (!moved) return moved.error();
@@ -460,7 +487,7 @@ Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const 
             out.IAE_setpoint[j][i] = (*moved)[i].IAE.value_or(kInfinity);
         }
     }
-    const Grids grids(plants);
+    const Grids grids(loops);
     const Peak near = mu_peak(grids.searched, controllers, least_of(1)),
                peak = mu_peak(grids.judged, controllers, least_of(near.value));
     out.mu = peak.value;
@@ -469,8 +496,10 @@ Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const 
     return out;
 }
 
-Expected<BltSettings> blt(const PlantMatrix& plants) {
-    if (auto error = without_diagonal(plants)) return *error;
+namespace {
+
+Expected<BltSettings> blt_of(const DecoupledPlants& loops) {
+    const PlantMatrix& plants = loops.plants;
     std::vector<UltimatePoint> points;
     for (std::size_t i = 0; i < plants.size(); ++i) {
         const auto point = ultimate_point(*plants[i][i]);
@@ -488,13 +517,37 @@ Expected<BltSettings> blt(const PlantMatrix& plants) {
         return out;
     };
     // The modulus falls as F grows; below the least stable F it says nothing.
-    const PlantResponses responses(plants, grid_of(plants, kSearched));
+    const PlantResponses responses(loops, grid_of(loops, kSearched));
     const double wanted = kDecibels * double(plants.size());
     const auto enough = [&](double F) {
-        return stable_with(plants, at(F), all_loops(plants)) && log_modulus(responses, at(F)) < wanted;
+        return stable_with(loops, at(F), loops.all_loops()) && log_modulus(responses, at(F)) < wanted;
     };
     const double F = log_bisect({kMostF, kLeastF}, enough, kOfF).inside;
     return BltSettings{at(F), F};
+}
+
+}  // namespace
+
+Expected<BltSettings> blt(const PlantMatrix& plants) {
+    if (auto error = without_diagonal(plants)) return *error;
+    return blt_of({plants, {}});
+}
+
+WrongGains with_wrong_gains(const PlantMatrix& plants, const std::vector<IdealPid>& controllers,
+                            const Decoupling& decoupling, double by) {
+    double largest = 1;
+    for (std::size_t i = 0; i < plants.size(); ++i)
+        for (std::size_t j = 0; j < plants.size(); ++j)
+            for (const double factor : {1 - by, 1 + by}) {
+                if (!plants[i][j]) continue;
+                PlantMatrix wrong = plants;
+                wrong[i][j] = changed(*plants[i][j], factor, 1);
+                const DecoupledPlants loops{wrong, decoupling};
+                if (!stable_with(loops, controllers, loops.all_loops())) return {by, false, {}};
+                const PlantResponses responses(loops, grid_of(loops, kSearched));
+                largest = std::max(largest, mu_peak(responses, controllers, least_of(1)).value);
+            }
+    return {by, true, largest};
 }
 
 Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const InteractionDesign& design,
@@ -503,15 +556,16 @@ Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const 
     if (!gains) return gains.error();
     if (auto error = without_diagonal(plants)) return *error;
     if (auto error = impossible_pairing(plants, *gains)) return *error;
-    const auto luyben = blt(plants);
+    const DecoupledPlants loops{plants, design.decoupling};
+    const auto luyben = blt_of(loops);
     InteractionResult out;
     out.blt = luyben ? OrReason<BltSettings>(*luyben) : OrReason<BltSettings>({}, luyben.error().message);
     const auto single =
         luyben ? Expected<std::vector<IdealPid>>(luyben->controllers) : single_settings(plants, design.mu, control);
     if (!single) return single.error();
-    const Grids grids(plants);
+    const Grids grids(loops);
     double least = kInfinity;
-    for (const Valley& valley : searched_valleys(plants, grids, design, *single, control)) {
+    for (const Valley& valley : searched_valleys(loops, grids, design, *single, control)) {
         out.partial = out.partial || valley.found.stopped;
         if (valley.found.excess <= limits::kMaxRelativeExcessFound && valley.found.log_cost < least) {
             least = valley.found.log_cost;
@@ -524,33 +578,36 @@ Expected<InteractionResult> design_interaction(const PlantMatrix& plants, const 
         return Error{ErrorKind::no_feasible_controller, "limit/mu",
                      "No settings were found that keep mu within its limit with every loop stable; allow a larger mu, "
                      "or another pairing."};
-    if (const auto weaker = detuned(plants, grids.searched, *single, design.mu)) out.detuned = *weaker;
-    auto figures = judge_interaction(plants, out.controllers);
+    if (const auto weaker = detuned(loops, grids.searched, *single, design.mu)) out.detuned = *weaker;
+    auto figures = judge_interaction(plants, out.controllers, design.decoupling);
     if (!figures) return figures.error();
     out.figures = std::move(*figures);
     return out;
 }
 
 Expected<StructureView> interaction_view(const std::string& of, const PlantMatrix& plants,
-                                         const std::vector<IdealPid>& controllers, std::optional<double> limit) {
-    auto all = diagram_of(plants, controllers, all_loops(plants));
+                                         const std::vector<IdealPid>& controllers, const Decoupling& decoupling,
+                                         std::optional<double> limit) {
+    const DecoupledPlants loops{plants, decoupling};
+    auto all = diagram_of(loops, controllers, loops.all_loops());
     if (!all) return all.error();
     StructureView out{.of = of, .diagram = all->blocks, .inputs = {}, .outputs = {}, .curves = {}};
     const auto blocks = std::make_shared<const BlockDiagram>(std::move(all->blocks));
     for (std::size_t i = 0; i < plants.size(); ++i) {
         const std::string number = std::to_string(i + 1);
         out.inputs.push_back({"setpoint_" + number, all->r[i]});
-        out.inputs.push_back({"load_" + number, all->u[i]});
+        out.inputs.push_back({"load_" + number, all->load[i]});
         out.outputs.push_back({"y_" + number, all->y[i]});
         out.outputs.push_back({"u_" + number, all->u[i]});
-        out.curves.push_back(sensitivity_at("loop_" + number, blocks, all->u[i], {}));
+        out.curves.push_back(sensitivity_at("loop_" + number, blocks, all->y[i], {}));
     }
-    out.curves.push_back({"mu", limit, [blocks, errors = all->r](double omega) {
-                              const auto n = Index(errors.size());
-                              Response S(n, n);
+    // Entered at y: a filter or a derivative of the measurement lies between it and the error.
+    out.curves.push_back({"mu", limit, [blocks, y = all->y](double omega) {
+                              const auto n = Index(y.size());
+                              LoopMatrix S(n, n);
                               for (Index j = 0; j < n; ++j) {
-                                  const auto x = blocks->response({0, omega}, errors[std::size_t(j)]);
-                                  for (Index i = 0; i < n; ++i) S(i, j) = x[errors[std::size_t(i)]];
+                                  const auto x = blocks->response({0, omega}, y[std::size_t(j)]);
+                                  for (Index i = 0; i < n; ++i) S(i, j) = x[y[std::size_t(i)]];
                               }
                               return structured_value(S);
                           }});

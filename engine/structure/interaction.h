@@ -2,6 +2,8 @@
 //
 //   y_i = sum_j P_ij (u_j + d_j),   u_i = C_i (r_i - y_i),   S = (I + P C)^-1
 //
+// With a decoupler (decoupling/decoupler.h) u = D C (r - y) and S = (I + P D C)^-1; the loads d enter behind it.
+//
 // S_ii = 1/(1 + L_i) exactly, L_i the loop i with all others closed. The limited peak is the structured singular value
 // mu(S) for one complex gain in each output: max |S_ii| <= mu(S) <= largest singular value, and unlike the latter it
 // does not depend on the units of the outputs. For two loops (Doyle 1982, the optimal scaling balances the
@@ -18,6 +20,7 @@
 #include "engine/expected.h"
 #include "engine/figure.h"
 #include "engine/progress.h"
+#include "engine/structure/decoupling/decoupler.h"
 #include "engine/structure/interaction_gains.h"
 
 namespace tunewright::structure {
@@ -34,8 +37,19 @@ struct InteractionFigures {
 };
 
 /// Controller i acts from y_i on u_i. Errors: those of add_pid(), at "controllers/i"; invalid_argument for a diagonal
-/// with a path that is not there.
-Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const std::vector<IdealPid>& controllers);
+/// with a path that is not there. A loop in manual takes its elements of the decoupler with it.
+Expected<InteractionFigures> judge_interaction(const PlantMatrix& plants, const std::vector<IdealPid>& controllers,
+                                               const Decoupling& decoupling = {});
+
+/// The loops where the gain of any one path of the plant is wrong by the share `by`, up or down, and the decoupler is
+/// what it was.
+struct WrongGains {
+    double by = 0.2;
+    bool stable = false;
+    Figure mu;  ///< the largest; empty where it is not stable
+};
+WrongGains with_wrong_gains(const PlantMatrix& plants, const std::vector<IdealPid>& controllers,
+                            const Decoupling& decoupling, double by = 0.2);
 
 inline constexpr double kDefaultMu = 1.8;
 
@@ -43,6 +57,7 @@ struct InteractionDesign {
     bool derivative = false;          ///< PID with Tf = Td/10 in place of PI
     double mu = kDefaultMu;           ///< limit, > 1
     std::vector<double> weight = {};  ///< of each output's IAE; empty: 1
+    Decoupling decoupling = {};       ///< stays as it is
 };
 
 /// Biggest log modulus tuning: Kp = Ku/(2.2 F), Ti = Pu F/1.2, F so that the modulus is 2 n dB (Luyben 1986, Industrial
@@ -57,7 +72,7 @@ Expected<BltSettings> blt(const PlantMatrix& plants);
 struct InteractionResult {
     std::vector<IdealPid> controllers;
     std::vector<IdealPid> detuned;  ///< the loops' own settings, weakened until the limit holds; empty: never
-    OrReason<BltSettings> blt;
+    OrReason<BltSettings> blt;      ///< with the decoupler, if there is one
     InteractionFigures figures;
     bool partial = false;
 };

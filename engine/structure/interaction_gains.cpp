@@ -87,6 +87,16 @@ bool is_possible(const Pairing& pairing) {
 
 }  // namespace
 
+std::optional<Error> without_diagonal(const PlantMatrix& plants) {
+    for (std::size_t i = 0; i < plants.size(); ++i)
+        if (!plants[i][i])
+            return Error{ErrorKind::invalid_argument, "pairing",
+                         "The pairing gives output " + std::to_string(i + 1) +
+                             " an input that does not move it. Choose another pairing, or leave it out: the best one "
+                             "is then chosen."};
+    return std::nullopt;
+}
+
 Expected<GainAnalysis> analyse_gains(const PlantMatrix& plants) {
     if (auto error = refused(plants)) return *error;
     GainAnalysis out;

@@ -29,6 +29,9 @@ inline PlantMatrix paired(const PlantMatrix& plants, const std::vector<int>& inp
     return out;
 }
 
+/// invalid_argument at "pairing" if a diagonal element is not there.
+std::optional<Error> without_diagonal(const PlantMatrix& plants);
+
 /// One way to pair outputs with inputs.
 struct Pairing {
     std::vector<int> input_of;         ///< of each output

@@ -59,6 +59,13 @@ Zpk factors_of(const LinearPlant& first, const LinearPlant& second) {
     return out;
 }
 
+LinearPlant changed(const LinearPlant& plant, double gain, double dead_time) {
+    Zpk out = factors_of(plant);
+    out.K *= gain;
+    out.L *= dead_time;
+    return std::move(*LinearPlant::make(Plant(out)));
+}
+
 namespace {
 
 /// The plant times s^n.

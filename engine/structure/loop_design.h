@@ -33,6 +33,9 @@ Zpk factors_of(const LinearPlant& plant);
 /// The product of two plants, without cancellation.
 Zpk factors_of(const LinearPlant& first, const LinearPlant& second);
 
+/// The plant with its gain and its dead time times a factor each.
+LinearPlant changed(const LinearPlant& plant, double gain, double dead_time);
+
 /// Plants with the signals that drive them.
 using PlantRow = std::vector<std::pair<int, const LinearPlant*>>;
 

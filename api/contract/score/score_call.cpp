@@ -48,7 +48,9 @@ Codec<double> plain() { return number(); }
 const Description<score::ProblemScore>& problem_score_contract() {
     static const auto description = [] {
         using P = score::ProblemScore;
-        const auto judged = [](const P& p) { return p.status == score::Status::kept || p.status == score::Status::limits_broken; };
+        const auto judged = [](const P& p) {
+            return p.status == score::Status::kept || p.status == score::Status::limits_broken;
+        };
         const auto if_judged = [judged](const P& p) { return !judged(p); };
         const SchemaOf schema = plain().schema;
         const auto figure = [](double P::*member) {
@@ -73,8 +75,9 @@ const Description<score::ProblemScore>& problem_score_contract() {
             .field("IAE", {}, figure(&P::IAE), schema, "After a unit load step.", {}, if_judged)
             .field("ratio", {}, figure(&P::ratio), schema,
                    "IAE over the proved bound; with broken limits it may be below 1.", {}, if_judged)
-            .field("why", {}, [](const P& p, Writer& out) { out.text(p.why); }, text(1000).schema,
-                   "Why there are no settings.", {}, [](const P& p) { return p.why.empty(); });
+            .field(
+                "why", {}, [](const P& p, Writer& out) { out.text(p.why); }, text(1000).schema,
+                "Why there are no settings.", {}, [](const P& p) { return p.why.empty(); });
         return d;
     }();
     return description;

@@ -231,11 +231,13 @@ const Description<ComparedControllers>& compared_contract() {
     static const auto description = [] {
         using C = ComparedControllers;
         Description<C> d("ComparedControllers", "Controllers for comparison.");
-        d.field("name", &C::name, words(), "blt, detuned or baseline.")
+        d.field("name", &C::name, words(),
+                "blt, detuned, no_decoupler, static_decoupler, simplified_decoupler or baseline.")
             .field("controllers", &C::controllers, only_answered(list_of(ideal_controller())),
                    "In the order of the outputs.");
-        add_figures(d);
+        add_figures(d, [](const C& c) -> const structure::InteractionFigures& { return c.figures; });
         d.field("cost", &C::cost, figure(), "Weighted sum of IAE_load.")
+            .field("decoupling", &C::decoupling, maybe(answer(decoupling_contract())), "The decoupler, with one.")
             .field("why_not", &C::why, unless<std::string>(words(), [](const auto& text) { return text.empty(); }),
                    "Why there are none.")
             .why_null(kUnstableLoops);
@@ -298,8 +300,16 @@ const Description<InteractionRequest>& interaction_request_contract() {
             .field("weights", &R::weights, object(output_weights_contract()), "Weights of the IAE.")
             .field("baseline", &R::baseline, maybe(controllers_codec(false)),
                    "The controllers in use, in the order of the outputs.")
-            .field("compare", &R::compare, list_of(choice<std::string>({{"blt", "blt"}, {"detuned", "detuned"}}), 0, 2),
-                   "blt: Luyben's biggest log modulus tuning; detuned: the same, weakened until the limit holds.")
+            .field("decoupler", &R::decoupler, decoupler_kind(),
+                   "A decoupler in front of the plant; with it the loops without one are designed too and compared.")
+            .field("compare", &R::compare,
+                   list_of(choice<std::string>({{"blt", "blt"},
+                                                {"detuned", "detuned"},
+                                                {"static_decoupler", "static_decoupler"},
+                                                {"simplified_decoupler", "simplified_decoupler"}}),
+                           0, 4),
+                   "blt: Luyben's biggest log modulus tuning; detuned: the same, weakened until the limit holds; "
+                   "static_decoupler and simplified_decoupler: controllers that are designed with it.")
             .check(check_interaction)
             .example({{"plant", Json::array({Json::array({"12.8 e^(-s)/(16.7s+1)", "-18.9 e^(-3s)/(21s+1)"}),
                                              Json::array({"6.6 e^(-7s)/(10.9s+1)", "-19.4 e^(-3s)/(14.4s+1)"})})},
@@ -335,6 +345,7 @@ const Description<InteractionAnswer>& interaction_answer_contract() {
                    "may_open: each loop may be put in manual; unstable_in_automatic: sets of loops, from 1, that are "
                    "not stable with the others in manual.")
             .field("F_blt", &A::F, figure(), "Detuning factor of Luyben's tuning.")
+            .field("decoupling", &A::decoupling, maybe(answer(decoupling_contract())), "With a decoupler.")
             .field("compared", &A::compared, list_of(answer(compared_contract())), "Controllers for comparison.")
             .why_null(kUnstableLoops);
         add_answer_members(d);

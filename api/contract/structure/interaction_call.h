@@ -1,6 +1,7 @@
 // Loops that interact: POST /v1/interaction.
 #pragma once
 
+#include "api/contract/structure/decoupling_part.h"
 #include "api/contract/structure/structure_parts.h"
 
 namespace tunewright::api {
@@ -24,6 +25,7 @@ struct InteractionRequest : StructureRequest {
     } weights;
     std::optional<InteractionControllers> baseline;
     std::vector<std::string> compare;
+    structure::DecouplerKind decoupler = structure::DecouplerKind::none;
 
     double weight(std::size_t output) const { return weights.y.empty() ? 1 : weights.y[output]; }
 };
@@ -36,6 +38,7 @@ struct ComparedControllers {
     structure::InteractionFigures figures;
     Figure cost;      ///< weighted sum of the IAE after loads
     std::string why;  ///< there are none, for this reason
+    std::optional<DecouplingView> decoupling = {};
 };
 
 struct InteractionAnswer : StructureAnswer {
@@ -45,6 +48,7 @@ struct InteractionAnswer : StructureAnswer {
     structure::InteractionFigures figures;
     Figure cost;
     Figure F;  ///< of the BLT settings
+    std::optional<DecouplingView> decoupling;
     std::vector<ComparedControllers> compared;
 };
 const Description<InteractionAnswer>& interaction_answer_contract();

@@ -27,7 +27,11 @@ constexpr Word kSeries[] = {{"single", "single loop"},
                             {"optimum", "least IAE"},
                             {"pid", "PID"},
                             {"program", "call by call, with limits"},
-                            {"blt", "BLT"}};
+                            {"blt", "BLT"},
+                            {"detuned", "detuned"},
+                            {"no_decoupler", "without decoupler"},
+                            {"static_decoupler", "static decoupler"},
+                            {"simplified_decoupler", "simplified decoupler"}};
 
 constexpr Word kInputs[] = {{"setpoint", "Set-point step"},
                             {"inner_load", "Load at the valve"},
@@ -94,8 +98,12 @@ constexpr Word kConclusions[] = {
     {"mu-above", "The peak mu of all loops is {mu}, above its limit of {limit}."},
     {"subsets-unstable", "Some loops are not stable while others are in manual: {count} sets of them."},
     {"better-than-blt", "Luyben's BLT tuning has {gain} times the weighted IAE after loads."},
-    {"decoupler-helps",
-     "Without a decoupler the weighted IAE after loads is {gain} times as large at the same limit."}};
+    {"decoupler-helps", "Without a decoupler the weighted IAE after loads is {gain} times as large at the same limit."},
+    {"decoupler-worse-than-none",
+     "The decoupler does harm after loads. Without it the weighted IAE is {gain} times as large at the same limit."},
+    {"decoupler-fragile",
+     "The decoupler needs an exact model: a gain of the plant that is wrong by {wrong%} % raises the peak mu much, or "
+     "makes the loops unstable. The largest relative gain is {relative_gain}."}};
 
 template <std::size_t N>
 std::string word_for(const Word (&words)[N], std::string_view code) {
@@ -192,6 +200,24 @@ Figures feedforward_figures(const Json& result) {
     return out;
 }
 
+/// Gain, lead, lag and delay of each element, and what the decoupler does.
+void add_decoupler(const Json& result, Figures& out) {
+    const std::string elements = "/decoupling/D/";
+    for (std::size_t i = 0; i < length_at(result, "/decoupling/D"); ++i)
+        for (std::size_t j = 0; j < result["decoupling"]["D"][i].size(); ++j) {
+            const Json& element = result["decoupling"]["D"][i][j];
+            const std::string place = elements + std::to_string(i) + "/" + std::to_string(j) + "/",
+                              of = " of the decoupler from loop " + std::to_string(j + 1) + " to loop " +
+                                   std::to_string(i + 1);
+            if (!element.is_object()) continue;
+            out.push_back({"Kf" + of, place + "Kf", ""});
+            for (const char* time : {"Tz", "Tp", "Lf"})
+                if (element.value(time, 0.0) != 0) out.push_back({time + of, place + time, "time"});
+        }
+    out.push_back({"Cost without the decoupler over the cost with it", "/decoupling/gain", ""});
+    out.push_back({"Mu if a gain of the plant is wrong by 20 %", "/decoupling/wrong_gains/mu", ""});
+}
+
 Figures interaction_figures(const Json& result) {
     Figures out{{"Structured peak mu", "/mu", ""}, {"Cost: weighted sum of the IAE after loads", "/cost", ""}};
     const std::string gains = "/pairings/" + std::to_string(chosen_pairing(result)) + "/relative_gains/";
@@ -201,6 +227,7 @@ Figures interaction_figures(const Json& result) {
         out.push_back({"Ms of loop " + loop + ", others in manual", "/Ms_alone/" + place, ""});
         out.push_back({"Ms of loop " + loop + ", others in automatic", "/Ms_others_closed/" + place, ""});
     }
+    if (result.contains("decoupling")) add_decoupler(result, out);
     for (std::size_t i = 0; i < length_at(result, "/compared"); ++i)
         out.push_back({"Cost: " + series_title(result["compared"][i].value("name", "")),
                        "/compared/" + std::to_string(i) + "/cost", ""});

@@ -133,11 +133,12 @@ StructureDrawing draw(const FeedforwardProblem& problem, const FeedforwardResult
     return drawing_of(views, points);
 }
 
-StructureDrawing draw(const PlantMatrix& plants, const NamedControllers& controllers, double limit, int points) {
+StructureDrawing draw(const PlantMatrix& plants, const std::vector<NamedControllers>& controllers, double limit,
+                      int points) {
     Views views;
-    for (std::size_t i = 0; i < controllers.size(); ++i)
-        add(views, interaction_view(controllers[i].first, plants, controllers[i].second,
-                                    i == 0 ? std::optional<double>(limit) : std::nullopt));
+    for (const NamedControllers& one : controllers)
+        add(views, interaction_view(one.name, plants, one.controllers, one.decoupling,
+                                    views.empty() ? std::optional<double>(limit) : std::nullopt));
     return drawing_of(views, points);
 }
 

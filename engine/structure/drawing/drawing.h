@@ -47,8 +47,13 @@ StructureDrawing draw(const FeedforwardProblem& problem, const FeedforwardResult
                       int points);
 
 /// Controllers by their names, the design first; `limit`: its limit on mu.
-using NamedControllers = std::vector<std::pair<std::string, std::vector<IdealPid>>>;
-StructureDrawing draw(const PlantMatrix& plants, const NamedControllers& controllers, double limit, int points);
+struct NamedControllers {
+    std::string name;
+    std::vector<IdealPid> controllers;
+    Decoupling decoupling = {};
+};
+StructureDrawing draw(const PlantMatrix& plants, const std::vector<NamedControllers>& controllers, double limit,
+                      int points);
 
 /// `of`: design, pid. `pid` null: none. An unstable model has no responses.
 StructureDrawing draw(const LinearPlant& plant, const PredictorController& controller, std::optional<double> limit,

@@ -59,7 +59,8 @@ Expected<StructureView> feedforward_view(const FeedforwardProblem& problem, cons
 
 /// Inputs setpoint_1, load_1 and so on; outputs y_1, u_1 and so on; loops 1 and so on, and mu. `limit` empty: none.
 Expected<StructureView> interaction_view(const std::string& of, const PlantMatrix& plants,
-                                         const std::vector<IdealPid>& controllers, std::optional<double> limit);
+                                         const std::vector<IdealPid>& controllers, const Decoupling& decoupling,
+                                         std::optional<double> limit);
 
 /// Inputs setpoint, load; outputs y, u; one loop. Error: unsupported for an unstable model, whose responses grow by
 /// rounding.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/code/algorithm.h"
+#include "engine/structure/decoupling/decoupler.h"
 #include "engine/structure/feedforward.h"
 
 namespace tunewright::structure {
@@ -33,12 +34,9 @@ Expected<code::Program> feedforward_program(const SampledPid& feedback, const Fe
 Expected<code::Program> level_program(const SampledPid& pid, const code::CodeOptions& u, double gap = 0,
                                       double gap_gain = 0);
 
-/// elements[i][j]: from u_j to u_i; empty: none, as on the diagonal.
-using Decoupling = std::vector<std::vector<std::optional<Feedforward>>>;
-
-/// u_i = C_i (r_i - y_i) + sum_j D_ij (u_j - bias_j), with the u_j that the actuators have had since the last call
-/// (inverted decoupling): so it holds at limits and with loops in manual. That call counts as a part of the dead time.
-/// `elements` empty: no decoupling.
+/// u_i = C_i (r_i - y_i) + sum_j E_ij (u_j - bias_j), with the u_j that the actuators have had since the last call
+/// (decoupling/decoupler.h): so it holds at limits and with loops in manual. That call counts as a part of the dead
+/// time. `elements` empty: no decoupling.
 Expected<code::Program> interaction_program(const std::vector<SampledPid>& controllers,
                                             const std::vector<code::CodeOptions>& u, const Decoupling& elements = {});
 

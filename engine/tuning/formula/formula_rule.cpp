@@ -148,8 +148,8 @@ TuningMethod formula_method() {
     method.compared = false;
     OptionSet<FormulaOptions> options;
     options.field(&FormulaOptions::Kp, "Kp", "Formula of Kp, such as 0.5*T/(K*L).", {.unit = "u/y", .required = true});
-    options.field(&FormulaOptions::Ti, "Ti", "Formula of Ti, such as min(T, 8*L). Without it there is no integral action.",
-                  {.unit = "time"});
+    options.field(&FormulaOptions::Ti, "Ti",
+                  "Formula of Ti, such as min(T, 8*L). Without it there is no integral action.", {.unit = "time"});
     options.field(&FormulaOptions::Td, "Td", "Formula of Td. Without it there is no derivative action.",
                   {.unit = "time"});
     options.main({"Kp", "Ti", "Td"});

@@ -268,6 +268,54 @@ TEST(InteractionCall, AGivenPairingAndPathsThatAreNotThere) {
     EXPECT_EQ(a["compared"][0]["name"], "blt");
 }
 
+TEST(InteractionCall, DecouplersStandNextToTheLoopsWithoutOne) {
+    Json request{{"plant", Json::array({Json::array({"22.89 e^(-0.2s)/(4.572s+1)", "-11.64 e^(-0.4s)/(1.807s+1)"}),
+                                        Json::array({"4.689 e^(-0.2s)/(2.174s+1)", "5.8 e^(-0.4s)/(1.801s+1)"})})},
+                 {"decoupler", "simplified"},
+                 {"compare", {"blt", "static_decoupler"}},
+                 {"sampled", Json::object()}};
+    const Json a = answered(interaction_call, request, "InteractionAnswer");
+    EXPECT_THAT(codes(a), Contains("decoupler-helps"));
+    const Json& own = a["decoupling"];
+    EXPECT_EQ(own["kind"], "simplified");
+    EXPECT_NEAR(own["D"][0][1]["Kf"].get<double>(), 11.64 / 22.89, 1e-9);
+    EXPECT_NEAR(own["D"][0][1]["Lf"].get<double>(), 0.2, 1e-9);
+    EXPECT_NEAR(own["D"][1][0]["Tz"].get<double>(), 1.801, 1e-9);
+    EXPECT_TRUE(own["D"][0][0].is_null());
+    EXPECT_NEAR(own["unrealised"][1][0].get<double>(), 0.2, 1e-9);
+    EXPECT_TRUE(own["wrong_gains"]["stable"]);
+    EXPECT_GT(own["wrong_gains"]["mu"], a["mu"]);
+    ASSERT_EQ(a["compared"].size(), 3u);
+    const Json &without = a["compared"][0], &luyben = a["compared"][1], &fixed = a["compared"][2];
+    EXPECT_EQ(without["name"], "no_decoupler");
+    EXPECT_TRUE(without["decoupling"].is_null() || !without.contains("decoupling"));
+    EXPECT_NEAR(own["gain"].get<double>(), without["cost"].get<double>() / a["cost"].get<double>(), 1e-9);
+    EXPECT_EQ(luyben["name"], "blt");
+    EXPECT_EQ(fixed["name"], "static_decoupler");
+    EXPECT_NEAR(fixed["decoupling"]["gain"].get<double>(), without["cost"].get<double>() / fixed["cost"].get<double>(),
+                1e-9);
+    // The program decouples: a step of r2 hardly moves y1, whose element needs no advance.
+    for (const Json& response : a["sampled"]["responses"])
+        if (response["input"] == "setpoint_2")
+            EXPECT_LT(response["figures"][0]["IAE"], 0.1 * without["IAE_setpoint"][1][0].get<double>());
+}
+
+TEST(InteractionCall, ADecouplerThatCannotRunIsRefusedAndInAComparisonExplained) {
+    Json request = interaction();
+    request.erase("controllers");
+    request["plant"][0][0] = "12.8 (1 - 30s) e^(-s)/((16.7s+1)(5s+1))";
+    request["pairing"] = {1, 2};
+    expect_refusal(interaction_call, with(request, "/decoupler", "simplified"), "/decoupler", "right half-plane");
+    expect_refusal(interaction_call, with(request, "/decoupler", "dynamic"), "/decoupler", "decoupler is");
+    Json given = with(interaction(), "/compare", {"static_decoupler"});
+    const Json a = answered(interaction_call, given, "InteractionAnswer");
+    EXPECT_EQ(a["compared"][0]["why_not"], "Nothing was designed.");
+    const Json judged = answered(interaction_call, with(interaction(), "/decoupler", "static"), "InteractionAnswer");
+    EXPECT_EQ(judged["decoupling"]["kind"], "static");
+    EXPECT_TRUE(judged["decoupling"]["gain"].is_null());
+    EXPECT_EQ(judged["decoupling"]["why_null"]["gain"], "Nothing was designed.");
+}
+
 TEST(InteractionCall, ErrorsNameThePlaceAndTheCure) {
     expect_refusal(interaction_call, Json::object(), "/plant", "Give either plant");
     expect_refusal(interaction_call, with(interaction(), "/plant", "1/(s+1)"), "/plant", "two or three rows");

@@ -211,7 +211,7 @@ TEST(DiagramResponse, ALoopFarFasterThanTheOthersCostsNoShortSteps) {
                 EXPECT_NEAR(nodes[i].y, values[i], 3e-5 * largest) << times[i];
             const auto figures = structure::step_figures(all->diagram, enters, all->y1, all->valve, 0);
             ASSERT_TRUE(figures);
-            EXPECT_NEAR(figures->IE, enters == all->valve ? 0 : -outer.Ti / outer.Kp, 1e-6 * outer.Ti / outer.Kp);
+            EXPECT_NEAR(*figures->IE, enters == all->valve ? 0 : -outer.Ti / outer.Kp, 1e-6 * outer.Ti / outer.Kp);
         }
     }
 }

@@ -9,8 +9,7 @@ namespace tunewright::score {
 namespace {
 
 Problem lag(const std::string& name, double L, double Ms, double lower) {
-    return {.name = name, .plant = Fopdt{.K = 1, .T = 1, .L = L}, .Ms = Ms, .Mt = Ms, .upper = lower,
-            .lower = lower};
+    return {.name = name, .plant = Fopdt{.K = 1, .T = 1, .L = L}, .Ms = Ms, .Mt = Ms, .upper = lower, .lower = lower};
 }
 
 /// IAE = Ti/Kp where the response does not change its sign.
@@ -71,10 +70,10 @@ TEST(Score, FormulasGiveTheFiguresOfTheBuiltInRules) {
         options.set("controller", std::string(kind));
         return options;
     };
-    const Rule rules[] = {{"simc", with("PI"), "T/(K*2*L)", "min(T, 8*L)", ""},
-                          {"cohen_coon", with("PID"), "(4/3 + L/T/4)/(K*L/T)", "L*(32 + 6*L/T)/(13 + 8*L/T)",
-                           "4*L/(11 + 2*L/T)"},
-                          {"tyreus_luyben", with("PI"), "Ku/3.2", "2.2*Pu", ""}};
+    const Rule rules[] = {
+        {"simc", with("PI"), "T/(K*2*L)", "min(T, 8*L)", ""},
+        {"cohen_coon", with("PID"), "(4/3 + L/T/4)/(K*L/T)", "L*(32 + 6*L/T)/(13 + 8*L/T)", "4*L/(11 + 2*L/T)"},
+        {"tyreus_luyben", with("PI"), "Ku/3.2", "2.2*Pu", ""}};
     std::vector<Problem> problems;
     for (const double L : {0.15, 0.5, 0.9}) {
         problems.push_back(lag("pi" + std::to_string(L), L, 3, 1));

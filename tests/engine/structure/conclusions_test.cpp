@@ -19,7 +19,7 @@ TEST(Conclusions, EachCodeHasANameOfItsOwn) {
     std::set<std::string> names;
     for (const ConclusionCode code : all_conclusion_codes()) names.insert(to_string(code));
     EXPECT_EQ(names.size(), all_conclusion_codes().size());
-    EXPECT_EQ(all_conclusion_codes().size(), std::size_t(ConclusionCode::better_than_blt) + 1);
+    EXPECT_EQ(all_conclusion_codes().size(), std::size_t(ConclusionCode::decoupler_fragile) + 1);
 }
 
 TEST(Conclusions, ACascadePaysFromOneAndAHalfTimesLessIaeOn) {

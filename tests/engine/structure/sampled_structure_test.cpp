@@ -179,6 +179,29 @@ TEST(SampledStructure, DecouplingRemovesWhatALoopDoesToTheOther) {
     EXPECT_LT(*figures(run(elements), "setpoint_1", 1).IAE, 0.05 * *figures(run({}), "setpoint_1", 1).IAE);
 }
 
+TEST(SampledStructure, TheFiguresOfADecouplerBecomeThoseWithoutSampling) {
+    const PlantMatrix plants = wood_berry();
+    const auto decoupler = design_decoupler(plants, DecouplerKind::simplified);
+    ASSERT_TRUE(decoupler);
+    const auto limit = judge_interaction(plants, {pi(0.4, 8), pi(-0.08, 12)}, decoupler->elements);
+    ASSERT_TRUE(limit);
+    const auto run = [&](double Ts) {
+        return answer(
+            interaction_program({sampled_pi(0.4, 8, Ts), sampled_pi(-0.08, 12, Ts)}, {{}, {}}, decoupler->elements),
+            interaction_scene(plants));
+    };
+    const SampledAnswer coarse = run(0.4), fine = run(0.1);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const std::string s = "_" + std::to_string(i + 1);
+        expect_first_order(*coarse.Ms.at("loop" + s), *fine.Ms.at("loop" + s), limit->Ms_others_closed[i], 0.03, s);
+        for (std::size_t j = 0; j < 2; ++j) {
+            const std::string load = "load_" + std::to_string(j + 1);
+            expect_first_order(figures(coarse, load, i).IAE, figures(fine, load, i).IAE, limit->IAE_load[j][i], 0.03,
+                               load + s);
+        }
+    }
+}
+
 TEST(SampledStructure, ALevelRisesAsInItsClosedForm) {
     const LevelProblem problem{.area = 12, .step = 4, .allowed = 1.8};
     const auto design = design_level(problem);

@@ -1765,7 +1765,7 @@ export type components = {
       };
     };
     Conclusion: {
-      code: "unstable" | "cascade-pays" | "cascade-gains-little" | "inner-too-slow" | "inner-peak-above" | "outer-peak-above" | "valve-peak-above" | "near-lowest-rate" | "level-above-room" | "flow-loop-unstable" | "flow-loop-too-slow" | "feedforward-exact" | "feedforward-pays" | "feedforward-gains-little" | "feedforward-worse-than-none" | "gain-alone-worse-than-none" | "peak-unavoidable" | "wrong-model-worse-than-none" | "pid-does-as-well" | "predictor-pays" | "limited-by-dead-time-error" | "narrow-dead-time-window" | "controller-unstable" | "pairing-impossible" | "other-pairing-better" | "hardly-interacting" | "mu-above" | "subsets-unstable" | "better-than-blt";
+      code: "unstable" | "cascade-pays" | "cascade-gains-little" | "inner-too-slow" | "inner-peak-above" | "outer-peak-above" | "valve-peak-above" | "near-lowest-rate" | "level-above-room" | "flow-loop-unstable" | "flow-loop-too-slow" | "feedforward-exact" | "feedforward-pays" | "feedforward-gains-little" | "feedforward-worse-than-none" | "gain-alone-worse-than-none" | "peak-unavoidable" | "wrong-model-worse-than-none" | "pid-does-as-well" | "predictor-pays" | "limited-by-dead-time-error" | "narrow-dead-time-window" | "controller-unstable" | "pairing-impossible" | "other-pairing-better" | "hardly-interacting" | "mu-above" | "subsets-unstable" | "better-than-blt" | "decoupler-helps" | "decoupler-worse-than-none" | "decoupler-fragile";
       figures: {
         why_null?: {
           [key: string]: string;
@@ -1994,7 +1994,8 @@ export type components = {
       limit?: components["schemas"]["InteractionLimit"];
       weights?: components["schemas"]["InteractionWeights"];
       baseline?: components["schemas"]["Controller"][];
-      compare?: ("blt" | "detuned")[];
+      decoupler?: "none" | "static" | "simplified";
+      compare?: ("blt" | "detuned" | "static_decoupler" | "simplified_decoupler")[];
     };
     InteractionLimit: {
       mu?: number;
@@ -2023,6 +2024,7 @@ export type components = {
         unstable_in_automatic: number[][];
       };
       F_blt: number | null;
+      decoupling?: components["schemas"]["Decoupling"];
       compared: components["schemas"]["ComparedControllers"][];
       partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];
@@ -2064,6 +2066,30 @@ export type components = {
         [key: string]: string;
       };
     };
+    Decoupling: {
+      kind: string;
+      D: (components["schemas"]["DecouplerElement"] | null)[][];
+      unrealised: number[][];
+      gain: number | null;
+      wrong_gains: components["schemas"]["WrongGains"];
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    DecouplerElement: {
+      Kf: number;
+      Tz: number;
+      Tp: number;
+      Lf: number;
+    };
+    WrongGains: {
+      by: number;
+      stable: boolean;
+      mu: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
     ComparedControllers: {
       name: string;
       controllers: components["schemas"]["Controller"][];
@@ -2076,6 +2102,7 @@ export type components = {
       IAE_load: (number | null)[][];
       IAE_setpoint: (number | null)[][];
       cost: number | null;
+      decoupling?: components["schemas"]["Decoupling"];
       why_not?: string;
       why_null?: {
         [key: string]: string;
@@ -2599,6 +2626,9 @@ export type InteractionLimit = components['schemas']['InteractionLimit'];
 export type InteractionWeights = components['schemas']['InteractionWeights'];
 export type InteractionAnswer = components['schemas']['InteractionAnswer'];
 export type Pairing = components['schemas']['Pairing'];
+export type Decoupling = components['schemas']['Decoupling'];
+export type DecouplerElement = components['schemas']['DecouplerElement'];
+export type WrongGains = components['schemas']['WrongGains'];
 export type ComparedControllers = components['schemas']['ComparedControllers'];
 export type PredictorRequest = components['schemas']['PredictorRequest'];
 export type PredictorController = components['schemas']['PredictorController'];

@@ -124,8 +124,31 @@ function levelTable({ design, frontier, robustness, bound }: AnswerOf<"level">, 
   };
 }
 
-function interactionTables({ compared, rga, pairings, ...design }: AnswerOf<"interaction">, time: string): StructureTable[] {
+type Decoupling = NonNullable<AnswerOf<"interaction">["decoupling"]>;
+
+/** Its figures and its elements, as "D.1.2.Kf". */
+const decouplerParts = (decoupling: Decoupling | null | undefined): Record<string, object | null> =>
+  decoupling
+    ? {
+        "decoupler.": { gain: decoupling.gain, why_null: decoupling.why_null },
+        "wrong.": decoupling.wrong_gains,
+        ...Object.fromEntries(decoupling.D.flatMap((row, to) => row.map((element, from) => [`D.${to + 1}.${from + 1}.`, element] as const))),
+      }
+    : {};
+
+function decouplerRows(all: readonly (Decoupling | null | undefined)[], time: string): Row[] {
+  const decouplers = all.flatMap((one) => (one ? [one] : []));
+  const elements = decouplers[0]?.D.flatMap((row, to) => row.flatMap((_, from) => (decouplers.some(({ D }) => D[to]?.[from]) ? [[to + 1, from + 1] as const] : []))) ?? [];
+  return [
+    ["decoupler.gain", "Weighted IAE without it over that with it"],
+    ["wrong.mu", "Peak mu with a gain that is 20 % wrong"],
+    ...elements.flatMap(([to, from]): Row[] => (["Kf", "Tz", "Tp", "Lf"] as const).map((name) => [`D.${to}.${from}.${name}`, `${name}, from loop ${from} to loop ${to}`, name === "Kf" ? "" : time])),
+  ];
+}
+
+function interactionTables({ compared, rga, pairings, decoupling, ...design }: AnswerOf<"interaction">, time: string): StructureTable[] {
   const loops = rga.map((_, index) => index + 1);
+  const decouplers = [decoupling, ...compared.map((other) => other.decoupling)];
   const each = (figure: string, name: (loop: number) => string, about?: ExplainedName): Row[] =>
     loops.map((loop) => [`${figure}_${loop}`, name(loop), "", ...(about ? [about] : [])] as unknown as Row);
   const pairs = (figure: string, words: (output: number, input: number) => string): Row[] =>
@@ -133,7 +156,7 @@ function interactionTables({ compared, rga, pairings, ...design }: AnswerOf<"int
   return [
     {
       caption: "Figures of the loops together",
-      columns: [column("design", { "": design }), ...compared.map(({ name, why_not, ...others }) => column(nameOfDesign(name), { "": others }, why_not ?? "The loops are not stable."))],
+      columns: [column("design", { "": design, ...decouplerParts(decoupling) }), ...compared.map(({ name, why_not, decoupling: other, ...others }) => column(nameOfDesign(name), { "": others, ...decouplerParts(other) }, why_not ?? (others.stable ? "There is no decoupler." : "The loops are not stable.")))],
       groups: [
         group("Robustness", [
           ["mu", "Peak mu"],
@@ -143,6 +166,7 @@ function interactionTables({ compared, rga, pairings, ...design }: AnswerOf<"int
         ]),
         group("After unit loads", [["cost", "Weighted IAE"], ...pairs("IAE_load", (y, u) => `IAE of y${y} after a load at u${u}`)]),
         group("After unit set-point steps", pairs("IAE_setpoint", (y, r) => `IAE of y${y} after a step of r${r}`)),
+        ...(decouplers.some(Boolean) ? [group("Decoupler", decouplerRows(decouplers, time))] : []),
       ],
     },
     {

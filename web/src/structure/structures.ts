@@ -128,6 +128,7 @@ function interactionFields(texts: Texts): FieldSpec[] {
     choice("size", "Loops", [["2", "2"], ["3", "3"]]),
     choice("pairing", "Pairing", [["", "the best"], ...PAIRINGS[loops.length as 2 | 3].map((inputs) => [inputs, pairWords(inputs)] as const)]),
     choice("controllers", "Controllers", DESIGNS, "controllers"),
+    choice("decoupler", "Decoupler", [["none", "none"], ["static", "static: gains"], ["simplified", "simplified: lead, lag, delay"]]),
     ...loops.map((loop) => settings(`controllers.${loop}`, `Settings of controller ${loop + 1}`, "controllers")),
     ...loops.flatMap((y) => loops.map((u) => plant(`plant.${y}.${u}`, `y${y + 1} from u${u + 1}`))),
     number("limit.mu", "Peak mu of all loops", { optional: true, slider: { ...MS_SLIDER, from: 1.2, to: 2.5 } }),

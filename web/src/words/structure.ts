@@ -38,6 +38,8 @@ const SENTENCES: Record<string, readonly [Finding["level"], string]> = {
   "mu-above": ["bad", "The peak mu of all loops is {mu}, above its limit of {limit}."],
   "subsets-unstable": ["warning", "Some loops are not stable while others are in manual: {count} sets of them."],
   "better-than-blt": ["good", "Luyben's BLT tuning has {gain} times the weighted IAE after loads."],
+  "decoupler-worse-than-none": ["warning", "The decoupler does harm after loads. Without it the weighted IAE is {gain} times as large at the same limit."],
+  "decoupler-fragile": ["warning", "The decoupler needs an exact model: a gain of the plant that is wrong by {wrong%} % raises the peak mu much, or makes the loops unstable. The largest relative gain is {relative_gain}."],
   "decoupler-helps": ["note", "Without a decoupler the weighted IAE after loads is {gain} times as large at the same limit."],
 };
 
@@ -67,12 +69,16 @@ const OF: Record<string, string> = {
   single: "single loop",
   baseline: "today",
   none: "no feedforward",
+  no_decoupler: "without decoupler",
   static: "gain alone",
   guzman_hagglund: "Guzmán and Hägglund",
   optimum: "least IAE",
   pid: "PID",
   program: "call by call, with limits",
   blt: "BLT",
+  detuned: "detuned",
+  static_decoupler: "static decoupler",
+  simplified_decoupler: "simplified decoupler",
 };
 
 /** A controller, or what it is compared with. */
@@ -134,6 +140,12 @@ function pidSettings({ Kp, Ti, Td, b, filter }: Controller, time: string, gain =
   ];
 }
 
+/** An element of a decoupler, for the output of another controller; times of 0 are left out. */
+const elementSettings = ({ Kf, Tz, Tp, Lf }: { Kf: number; Tz: number; Tp: number; Lf: number }, from: string, time: string): StructureSetting[] => [
+  ...setting(`Kf from ${from}`, Kf),
+  ...([["Tz", Tz], ["Tp", Tp], ["Lf", Lf]] as const).flatMap(([name, value]) => (value ? setting(`${name} from ${from}`, value, time) : [])),
+];
+
 /** "40.2 s + 1". */
 export function polynomial(coefficients: readonly number[]): string {
   const terms = coefficients.flatMap((value, index) => {
@@ -177,7 +189,10 @@ export function settingsOfAnswer(answer: StructureAnswer, units: UnitNames): Blo
       return answer.controllers.map((controller, index) => ({
         block: `C${index + 1}`,
         title: `Controller ${index + 1}: y${index + 1} by u${answer.pairing[index]}`,
-        settings: pidSettings(controller, time),
+        settings: [
+          ...pidSettings(controller, time),
+          ...(answer.decoupling?.D[index] ?? []).flatMap((element, from) => (element ? elementSettings(element, `u${answer.pairing[from]}`, time) : [])),
+        ],
       }));
     case "predictor": {
       const { C, F } = answer.controller;

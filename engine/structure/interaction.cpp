@@ -414,16 +414,6 @@ Expected<std::vector<IdealPid>> single_settings(const PlantMatrix& plants, doubl
     return out;
 }
 
-std::optional<Error> without_diagonal(const PlantMatrix& plants) {
-    for (std::size_t i = 0; i < plants.size(); ++i)
-        if (!plants[i][i])
-            return Error{ErrorKind::invalid_argument, "pairing",
-                         "The pairing gives output " + std::to_string(i + 1) +
-                             " an input that does not move it. Choose another pairing, or leave it out: the best one "
-                             "is then chosen."};
-    return std::nullopt;
-}
-
 /// Integral action needs a positive index and positive relative gains (interaction_gains.h), unless a plant is
 /// unstable.
 std::optional<Error> impossible_pairing(const PlantMatrix& plants, const GainAnalysis& gains) {

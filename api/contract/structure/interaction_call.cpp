@@ -235,7 +235,7 @@ const Description<ComparedControllers>& compared_contract() {
                 "blt, detuned, no_decoupler, static_decoupler, simplified_decoupler or baseline.")
             .field("controllers", &C::controllers, only_answered(list_of(ideal_controller())),
                    "In the order of the outputs.");
-        add_figures(d, [](const C& c) -> const structure::InteractionFigures& { return c.figures; });
+        add_figures(d);
         d.field("cost", &C::cost, figure(), "Weighted sum of IAE_load.")
             .field("decoupling", &C::decoupling, maybe(answer(decoupling_contract())), "The decoupler, with one.")
             .field("why_not", &C::why, unless<std::string>(words(), [](const auto& text) { return text.empty(); }),

@@ -296,8 +296,9 @@ TEST(InteractionCall, DecouplersStandNextToTheLoopsWithoutOne) {
                 1e-9);
     // The program decouples: a step of r2 hardly moves y1, whose element needs no advance.
     for (const Json& response : a["sampled"]["responses"])
-        if (response["input"] == "setpoint_2")
+        if (response["input"] == "setpoint_2") {
             EXPECT_LT(response["figures"][0]["IAE"], 0.1 * without["IAE_setpoint"][1][0].get<double>());
+        }
 }
 
 TEST(InteractionCall, ADecouplerThatCannotRunIsRefusedAndInAComparisonExplained) {

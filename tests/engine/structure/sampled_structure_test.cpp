@@ -196,7 +196,7 @@ TEST(SampledStructure, TheFiguresOfADecouplerBecomeThoseWithoutSampling) {
         expect_first_order(*coarse.Ms.at("loop" + s), *fine.Ms.at("loop" + s), limit->Ms_others_closed[i], 0.03, s);
         for (std::size_t j = 0; j < 2; ++j) {
             const std::string load = "load_" + std::to_string(j + 1);
-            expect_first_order(figures(coarse, load, i).IAE, figures(fine, load, i).IAE, limit->IAE_load[j][i], 0.03,
+            expect_first_order(*figures(coarse, load, i).IAE, *figures(fine, load, i).IAE, limit->IAE_load[j][i], 0.03,
                                load + s);
         }
     }

@@ -25,7 +25,7 @@ class Loop:
         self.scale = scale
         corners = [abs(r) for r in [*poles, *np.roots(self.num)] if abs(r) > small]
         low = 1e-3 * min([scale, *corners])
-        high = 1e3 * scale
+        high = 1e3 * scale if len(self.den) > len(self.num) else 1e5 * scale  # without lags the filter alone ends it
         if self.L:
             high = max(high, 50 / self.L)
         omega = np.exp(np.linspace(np.log(low), np.log(high), int(per_decade * np.log10(high / low))))

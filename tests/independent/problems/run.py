@@ -123,6 +123,7 @@ def check_random(pool, problems, count, seed):
         ratios.append(over_lower)
         near.append(over_upper)
         below += len(found)
+        print(f"{name}: {made} designs, {one_simulated} simulated, least IAE over the bound {over_lower:.5f}", flush=True)
         for gains, IAE in found:
             print(f"FAILED {name}: IAE {IAE} of Kp, Ti, Td {gains} is below the bound", flush=True)
     print(f"{total} random designs within the limits on {len(problems)} plants, {simulated} of them simulated, the others "

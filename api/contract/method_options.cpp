@@ -6,7 +6,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMaxTextLength = 100;
+constexpr std::size_t kMaxTextLength = 1000;
 
 /// The destination of an option's value.
 struct OptionPlace {

@@ -108,6 +108,16 @@ private:
         return std::max(std::abs(data_.problem.design[0]), data_.problem.design[1] / data_.scale);
     }
 
+    /// The third unknown of the design, or of a usual one if that has no derivative: Td of 0.3 over the frequency of
+    /// the largest |S|.
+    double unit_of_third() const {
+        const CertificateProblem& problem = data_.problem;
+        if (problem.structure == CertifiedStructure::pi) return 0;
+        const double Td = 0.45 / data_.scale;
+        const double usual = problem.structure == CertifiedStructure::pid_tied ? Td : unit_of_k() * Td;
+        return problem.design[2] > 0 ? problem.design[2] : usual;
+    }
+
     CertifiedBox root() const {
         const auto& problem = data_.problem;
         const double reach =
@@ -118,7 +128,7 @@ private:
         CertifiedBox box;
         box.low = {at_the_edge ? 0 : -reach * unit_of_k(), (1 - 1e-9) / data_.goal, 0};
         box.high = {reach * unit_of_k(), std::max(reach * problem.design[1], 1.1 * box.low[1]),
-                    reach * problem.design[2]};
+                    reach * unit_of_third()};
         return box;
     }
 
@@ -264,8 +274,8 @@ std::optional<Error> fault_of(const CertificateProblem& problem, const CertifyOp
     if (!(problem.Ms > 1) || !(problem.Mt > 1)) return wrong("Ms", "Ms and Mt must be above 1.");
     if (!(problem.design[1] > 0))
         return wrong("controller", "The design must have integral action of the plant's sign.");
-    if (problem.structure == CertifiedStructure::pid_tied && !(problem.design[2] > 0))
-        return wrong("controller", "Td of the design must be above 0.");
+    if (problem.structure == CertifiedStructure::pid_tied && !(problem.design[2] >= 0))
+        return wrong("controller", "Td of the design must not be below 0.");
     if (!(problem.upper > 0) || !std::isfinite(problem.upper))
         return wrong("controller", "The design has no finite IAE.");
     if (!(options.gap > 0) || !(options.gap < 1)) return wrong("gap", "The gap must be between 0 and 1.");
@@ -302,7 +312,7 @@ const char* to_string(LeafReason reason) {
 }
 
 Expected<CertificateProblem> certificate_problem(const LinearPlant& plant, const IdealPid& design, double Ms, double Mt,
-                                                 double upper) {
+                                                 double upper, bool pid) {
     const auto unsupported = [](const std::string& message) {
         return Error{.kind = ErrorKind::unsupported, .where = "controller", .message = message};
     };
@@ -323,13 +333,14 @@ Expected<CertificateProblem> certificate_problem(const LinearPlant& plant, const
         for (double& b : problem.plant.num) b = -b;
     problem.design = {sign * design.Kp, sign * design.Kp / design.Ti, 0};
     const double Tf = filtered ? design.filter.Tf : 0;
-    if (design.Td > 0 && std::abs(Tf * certificate::kN - design.Td) < 1e-9 * design.Td) {
+    const bool no_filter = design.Td == 0 && Tf == 0;
+    if (pid && (no_filter || std::abs(Tf * certificate::kN - design.Td) < 1e-9 * design.Td)) {
         problem.structure = CertifiedStructure::pid_tied;
         problem.design[2] = design.Td;
     } else {
         problem.Tf = Tf;
-        problem.structure = design.Td > 0 ? CertifiedStructure::pid_fixed : CertifiedStructure::pi;
-        if (design.Td > 0) problem.design[2] = sign * design.Kp * design.Td;
+        problem.structure = pid ? CertifiedStructure::pid_fixed : CertifiedStructure::pi;
+        problem.design[2] = sign * design.Kp * design.Td;
     }
     return problem;
 }

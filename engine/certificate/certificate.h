@@ -103,10 +103,11 @@ struct Certificate {
 };
 
 /// The problem of a design whose measurement filter is of second order or absent: PID with Tf = Td/10 is pid_tied.
-/// With ki < 0 plant and controller both change their sign, which leaves the loop as it is.
+/// With ki < 0 plant and controller both change their sign, which leaves the loop as it is. `pid`: PIDs are compared,
+/// also if the best one has no derivative.
 /// Errors: unsupported for another filter, a design without integral action, a plant with a zero at s = 0.
 Expected<CertificateProblem> certificate_problem(const LinearPlant& plant, const IdealPid& design, double Ms, double Mt,
-                                                 double upper);
+                                                 double upper, bool pid);
 
 /// Branch and bound. Stopping early gives the bound proven so far. Errors: invalid_argument for numbers outside their
 /// ranges, or a design that is not stable.

@@ -1,5 +1,6 @@
 #include "engine/request/verdict/cures.h"
 #include "engine/request/verdict/findings.h"
+#include "engine/tuning/robust/robust.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,6 +49,19 @@ OptionalFinding excess(const VerdictInput& c) {
         .say("At the same Ms the best PID has a lower load IAE: this one lies ")
         .number("excess_percent", percent, "%")
         .say(" above it.");
+}
+
+OptionalFinding proved(const VerdictInput& c) {
+    const auto* report = c.entry.report_as<CertificateReport>();
+    if (report == nullptr) return {};
+    const Certificate& proof = report->certificate;
+    const std::string kind = proof.problem.structure == CertifiedStructure::pi ? "PI" : "PID";
+    FindingBuilder draft(proof.complete ? "proved" : "proved-so-far", Level::note);
+    draft.say(proof.complete ? "Within " : "So far proved to be within ")
+        .say(figure_text(100 * std::max(0.0, proof.gap)))
+        .say(" % of the best possible " + kind + " within these limits")
+        .say(proof.complete ? " (proved)." : ".");
+    return draft.figure("gap", proof.gap).figure("lower", proof.lower);
 }
 
 OptionalFinding dead_time_rules(const VerdictInput& c) {

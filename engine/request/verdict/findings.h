@@ -100,6 +100,7 @@ OptionalFinding at_its_limits(const VerdictInput& c);  ///< u reaches the actuat
 // causes.cpp
 OptionalFinding PI_or_PID(const VerdictInput& c);
 OptionalFinding excess(const VerdictInput& c);  ///< excess over the least IAE at the same Ms
+OptionalFinding proved(const VerdictInput& c);  ///< how much better any controller could be, by a proof
 OptionalFinding dead_time_rules(const VerdictInput& c);
 OptionalFinding filter_rules(const VerdictInput& c);
 OptionalFinding sample_time(const VerdictInput& c);

@@ -43,9 +43,26 @@ std::vector<Finding> verdict_on(const TuningEntry& entry, const TuningEntry* tod
         for (const auto& finding : {on_device, sample_time, all_members}) add(finding(c));
         return verdict;
     }
-    for (const auto& finding : {active_limit, all_members, margins, nonlinear_margins, large_errors, load_error,
-                                replayed, own_step, on_device, at_its_limits, actuator_too_small_as_assumed, movement,
-                                noise, sample_time, small_overshoot, PI_or_PID, excess, dead_time_rules, filter_rules})
+    for (const auto& finding : {active_limit,
+                                all_members,
+                                margins,
+                                nonlinear_margins,
+                                large_errors,
+                                load_error,
+                                replayed,
+                                own_step,
+                                on_device,
+                                at_its_limits,
+                                actuator_too_small_as_assumed,
+                                movement,
+                                noise,
+                                sample_time,
+                                small_overshoot,
+                                PI_or_PID,
+                                excess,
+                                proved,
+                                dead_time_rules,
+                                filter_rules})
         add(finding(c));
     std::stable_sort(verdict.begin() + after_heads, verdict.end(), [](const Finding& a, const Finding& b) {
         return (a.level >= Level::warning) > (b.level >= Level::warning);

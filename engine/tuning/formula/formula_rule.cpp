@@ -141,7 +141,7 @@ TuningMethod formula_method() {
     TuningMethod method;
     method.id = "formula";
     method.title = "Your own formula";
-    method.formula = "Kp, Ti and Td as you write them, of K, T, L, T2, Kv = K/T, tau = L/(L + T), Ku and Pu";
+    method.formula = "Kp, Ti, Td: as the request writes them";
     method.source = "the request";
     method.needs = "any linear plant that has the figures of the formulas (others are reduced)";
     method.validity = "as far as the formulas go; POST /v1/score finds out";

@@ -161,7 +161,7 @@ static void add_certificate(const DesignProblem& problem, const RobustOptions& o
     if (std::string why = why_not(problem, options); !why.empty()) return refuse(std::move(why));
     const auto design = to_ideal(result.controller);
     if (!design) return refuse(design.error().message);
-    const auto posed = certificate_problem(*problem.plant, *design, options.Ms, options.Mt, upper);
+    const auto posed = certificate_problem(*problem.plant, *design, options.Ms, options.Mt, upper, pid_wanted(options));
     if (!posed) return refuse(posed.error().message);
     const double start = control.now_ms ? control.now_ms() : 0;
     auto proof = certify(*posed, {.gap = *options.certify.gap, .reach = {}}, control);

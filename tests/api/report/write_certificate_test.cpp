@@ -13,7 +13,7 @@ namespace {
 TEST(WriteCertificate, TheFirstLineHasTheClaimAndEachLeafALineThatReadsBackExactly) {
     const auto plant = LinearPlant::make(Fopdt{.K = 1, .T = 100, .L = 1, .uncertainty = {}});
     const IdealPid pid{.Kp = 30, .Ti = 12, .filter = {}};
-    const auto problem = certificate_problem(*plant, pid, 1.5, 1.6, 0.45);
+    const auto problem = certificate_problem(*plant, pid, 1.5, 1.6, 0.45, false);
     ASSERT_TRUE(problem);
     CertifyOptions options;
     options.keep_leaves = true;

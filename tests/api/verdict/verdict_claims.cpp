@@ -71,6 +71,8 @@ const std::map<std::string, std::vector<std::string>>& places() {
         {"u_std", {"/performance/noise/u_std"}},
         {"longest_sample_time", {"/longest_sample_time"}},
         {"excess_percent", {"/optimum_at_Ms/excess_percent"}},
+        {"gap", {"/certificate/gap"}},
+        {"lower", {"/certificate/lower"}},
         {"asked_percent", {"/options/setpoint/overshoot"}},
         {"design_percent", {"/options/setpoint/overshoot"}},
         {"Tf", {"/controller/filter/Tf"}},

@@ -34,7 +34,7 @@ CertificateProblem certificate_case(const std::string& id, const std::string& wh
         IdealPid pid{.Kp = best.at("K"), .Ti = best.at("Ti"), .Td = best.at("Td"), .filter = {}};
         if (pid.Td > 0) pid.filter = {FilterType::measurement_second_order, best.at("Tf")};
         if (which == "pid_M1.4_td10") pid.filter.Tf = pid.Td / 10;
-        return *certificate_problem(*plant, pid, kM, kM, best.at("IAE"));
+        return *certificate_problem(*plant, pid, kM, kM, best.at("IAE"), pid.Td > 0);
     }
     ADD_FAILURE() << id << " is not in the batch";
     return {};
@@ -215,7 +215,7 @@ TEST(Certificate, AnUnstablePlantAndAPlantOfNegativeGainAreProved) {
     double IAE = 0;
     const IdealPid pid = best_of_grid(*plant, IAE);
     ASSERT_LT(IAE, 10);
-    const auto problem = certificate_problem(*plant, pid, 2, 2, IAE);
+    const auto problem = certificate_problem(*plant, pid, 2, 2, IAE, false);
     ASSERT_TRUE(problem);
     CertifyOptions options;
     options.gap = 0.15;  // the grid's steps cost about a tenth
@@ -226,7 +226,7 @@ TEST(Certificate, AnUnstablePlantAndAPlantOfNegativeGainAreProved) {
     EXPECT_TRUE(proof->complete) << proof->gap;
 
     const auto mirrored = LinearPlant::make(Fopdt{.K = 1, .T = -4, .L = 0.2, .uncertainty = {}});
-    const auto same = certificate_problem(*mirrored, {.Kp = -pid.Kp, .Ti = pid.Ti, .filter = {}}, 2, 2, IAE);
+    const auto same = certificate_problem(*mirrored, {.Kp = -pid.Kp, .Ti = pid.Ti, .filter = {}}, 2, 2, IAE, false);
     ASSERT_TRUE(same);
     EXPECT_EQ(same->design, problem->design);
     EXPECT_EQ(certify(*same, options, {})->boxes, proof->boxes);
@@ -245,11 +245,13 @@ TEST(Certificate, DoesNotDependOnTheOrderOfItsThreads) {
 
 TEST(Certificate, RefusesWhatItCannotProve) {
     const auto plant = LinearPlant::make(Fopdt{.K = 1, .T = 1, .L = 1, .uncertainty = {}});
-    EXPECT_EQ(certificate_problem(*plant, {.Kp = 1, .filter = {}}, kM, kM, 1).error().kind, ErrorKind::unsupported);
-    EXPECT_EQ(
-        certificate_problem(*plant, {.Kp = 1, .Ti = 1, .filter = {FilterType::derivative, 1}}, kM, kM, 1).error().kind,
-        ErrorKind::unsupported);
-    const auto unstable = certificate_problem(*plant, {.Kp = 5, .Ti = 1, .filter = {}}, kM, kM, 1);
+    EXPECT_EQ(certificate_problem(*plant, {.Kp = 1, .filter = {}}, kM, kM, 1, false).error().kind,
+              ErrorKind::unsupported);
+    EXPECT_EQ(certificate_problem(*plant, {.Kp = 1, .Ti = 1, .filter = {FilterType::derivative, 1}}, kM, kM, 1, false)
+                  .error()
+                  .kind,
+              ErrorKind::unsupported);
+    const auto unstable = certificate_problem(*plant, {.Kp = 5, .Ti = 1, .filter = {}}, kM, kM, 1, false);
     ASSERT_TRUE(unstable);
     EXPECT_EQ(certify(*unstable, {}, {}).error().kind, ErrorKind::invalid_argument);
 }

@@ -6,10 +6,10 @@
 #include <utility>
 #include <variant>
 
+#include "api/certificate/problem_library.h"
 #include "api/contract/score/score_call.h"
 #include "api/csv/cell.h"
 #include "api/describe/body.h"
-#include "api/score/library.h"
 #include "engine/score/rule_settings.h"
 #include "engine/tuning/registry.h"
 

@@ -11,9 +11,9 @@
 #include "engine/loop/loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/structure/cascade_diagram.h"
-#include "engine/structure/limited_search.h"
-#include "engine/structure/local_peaks.h"
-#include "engine/structure/nearby_stability.h"
+#include "engine/structure/search/limited_search.h"
+#include "engine/structure/search/local_peaks.h"
+#include "engine/structure/search/nearby_stability.h"
 #include "engine/structure/step_figures.h"
 
 namespace tunewright::structure {

@@ -14,14 +14,13 @@
 #include "engine/blocks/diagram_loop.h"
 #include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
-#include "engine/number_text.h"
 #include "engine/numerics/optimise/line_search.h"
 #include "engine/structure/decoupling/decoupler_blocks.h"
 #include "engine/structure/drawing/view.h"
 #include "engine/structure/interaction_gains.h"
-#include "engine/structure/limited_search.h"
-#include "engine/structure/local_peaks.h"
 #include "engine/structure/loop_design.h"
+#include "engine/structure/search/limited_search.h"
+#include "engine/structure/search/local_peaks.h"
 #include "engine/structure/step_figures.h"
 #include "engine/structure/structured_peak.h"
 #include "engine/tuning/limits.h"
@@ -412,24 +411,6 @@ Expected<std::vector<IdealPid>> single_settings(const PlantMatrix& plants, doubl
         out.push_back(*settings);
     }
     return out;
-}
-
-/// Integral action needs a positive index and positive relative gains (interaction_gains.h), unless a plant is
-/// unstable.
-std::optional<Error> impossible_pairing(const PlantMatrix& plants, const GainAnalysis& gains) {
-    for (const auto& row : plants)
-        for (const auto& plant : row)
-            if (plant && plant->unstable_poles() > 0) return std::nullopt;
-    const auto own =
-        std::ranges::find_if(gains.pairings, [](const Pairing& one) { return std::ranges::is_sorted(one.input_of); });
-    if (own->possible) return std::nullopt;
-    const std::string why = own->niederlinski && *own->niederlinski < 0
-                                ? "its Niederlinski index is " + text(*own->niederlinski, 3)
-                                : "its lowest relative gain is " + text(std::ranges::min(own->relative), 3);
-    return Error{ErrorKind::no_feasible_controller, "pairing",
-                 "With this pairing no controllers with integral action are stable both together and with one loop in "
-                 "manual: " +
-                     why + (gains.pairings.front().possible ? ". Choose another pairing." : ". No pairing is better.")};
 }
 
 }  // namespace

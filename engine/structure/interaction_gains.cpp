@@ -10,6 +10,7 @@
 #include <string>
 
 #include "engine/loop/margins.h"
+#include "engine/number_text.h"
 
 namespace tunewright::structure {
 namespace {
@@ -145,6 +146,22 @@ Expected<GainAnalysis> analyse_gains(const PlantMatrix& plants) {
         return a.possible != b.possible ? a.possible : a.distance < b.distance;
     });
     return out;
+}
+
+std::optional<Error> impossible_pairing(const PlantMatrix& plants, const GainAnalysis& gains) {
+    for (const auto& row : plants)
+        for (const auto& plant : row)
+            if (plant && plant->unstable_poles() > 0) return std::nullopt;
+    const auto own =
+        std::ranges::find_if(gains.pairings, [](const Pairing& one) { return std::ranges::is_sorted(one.input_of); });
+    if (own->possible) return std::nullopt;
+    const std::string why = own->niederlinski && *own->niederlinski < 0
+                                ? "its Niederlinski index is " + text(*own->niederlinski, 3)
+                                : "its lowest relative gain is " + text(std::ranges::min(own->relative), 3);
+    return Error{ErrorKind::no_feasible_controller, "pairing",
+                 "With this pairing no controllers with integral action are stable both together and with one loop in "
+                 "manual: " +
+                     why + (gains.pairings.front().possible ? ". Choose another pairing." : ". No pairing is better.")};
 }
 
 }  // namespace tunewright::structure

@@ -52,4 +52,8 @@ struct GainAnalysis {
 /// Errors: invalid_argument for a matrix that is not square, not of two or three rows, or singular at steady state.
 Expected<GainAnalysis> analyse_gains(const PlantMatrix& plants);
 
+/// no_feasible_controller at "pairing" if the plants as they are paired have a negative index or relative gain, which
+/// integral action does not stand (above), unless a plant is unstable. `gains`: of these plants.
+std::optional<Error> impossible_pairing(const PlantMatrix& plants, const GainAnalysis& gains);
+
 }  // namespace tunewright::structure

@@ -14,8 +14,8 @@
 #include "engine/number_text.h"
 #include "engine/numerics/optimise/line_search.h"
 #include "engine/structure/drawing/view.h"
-#include "engine/structure/local_peaks.h"
 #include "engine/structure/loop_design.h"
+#include "engine/structure/search/local_peaks.h"
 
 namespace tunewright::structure {
 namespace {

@@ -1,5 +1,6 @@
 // The commands about one loop: from a plant or a record to settings, a report or a program.
 #include <algorithm>
+#include <tuple>
 
 #include "engine/number_text.h"
 #include "engine/tuning/limits.h"

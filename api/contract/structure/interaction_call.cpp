@@ -341,11 +341,11 @@ const Description<InteractionAnswer>& interaction_answer_contract() {
                    "In the order of the outputs.");
         add_figures(d);
         d.field("cost", &A::cost, figure(), "Weighted sum of IAE_load.")
+            .field("decoupling", &A::decoupling, maybe(answer(decoupling_contract())), "With a decoupler.")
             .field("manual", {}, write_manual, manual_schema,
                    "may_open: each loop may be put in manual; unstable_in_automatic: sets of loops, from 1, that are "
                    "not stable with the others in manual.")
             .field("F_blt", &A::F, figure(), "Detuning factor of Luyben's tuning.")
-            .field("decoupling", &A::decoupling, maybe(answer(decoupling_contract())), "With a decoupler.")
             .field("compared", &A::compared, list_of(answer(compared_contract())), "Controllers for comparison.")
             .why_null(kUnstableLoops);
         add_answer_members(d);

@@ -10,7 +10,7 @@
 #include "engine/blocks/diagram_loop.h"
 #include "engine/blocks/diagram_response.h"
 #include "engine/structure/drawing/view.h"
-#include "engine/structure/local_peaks.h"
+#include "engine/structure/search/local_peaks.h"
 
 namespace tunewright::structure {
 namespace {

@@ -144,7 +144,7 @@ TuningMethod formula_method() {
     method.formula = "Kp, Ti, Td: as the request writes them";
     method.source = "the request";
     method.needs = "any linear plant that has the figures of the formulas (others are reduced)";
-    method.validity = "as far as the formulas go; POST /v1/score finds out";
+    method.validity = "as far as the formulas go";
     method.compared = false;
     OptionSet<FormulaOptions> options;
     options.field(&FormulaOptions::Kp, "Kp", "Formula of Kp, such as 0.5*T/(K*L).", {.unit = "u/y", .required = true});

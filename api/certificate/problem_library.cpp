@@ -1,4 +1,4 @@
-#include "api/score/library.h"
+#include "api/certificate/problem_library.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "engine/structure/limited_search.h"
+#include "engine/structure/search/limited_search.h"
 
 #include <algorithm>
 #include <cmath>

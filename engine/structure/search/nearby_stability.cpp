@@ -1,4 +1,4 @@
-#include "engine/structure/nearby_stability.h"
+#include "engine/structure/search/nearby_stability.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "engine/structure/local_peaks.h"
+#include "engine/structure/search/local_peaks.h"
 
 #include <algorithm>
 #include <cmath>

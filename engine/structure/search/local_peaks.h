@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/plant/linear/linear_plant.h"
-#include "engine/structure/limited_search.h"
+#include "engine/structure/search/limited_search.h"
 
 namespace tunewright::structure {
 

@@ -26,7 +26,7 @@ constexpr int kEchoes = 4, kEchoesOfMany = 3, kEchoesAtLowAccuracy = 2;
 constexpr std::size_t kMany = 4;  // delayed signals
 constexpr double kLowAccuracy = 1e-5;
 constexpr double kNearZero = 4e-5;       // frequency, of 1/time_scale, from which the values at 0 are extrapolated
-constexpr double kManyRates = 8;         // of a step: beyond it doubling is faster than a series
+constexpr double kManyRates = 2;         // of a step that is used once: a longer one is put together of usual ones
 constexpr double kNoError = 1e-9;        // of the step: the error's final value
 constexpr double kNoErrorOfPeak = 1e-7;  // the same, of the largest value of y
 constexpr double kOneLevel = 16;         // by which half the step lowers the error
@@ -205,18 +205,22 @@ private:
             odd = odd || std::abs(*options_.horizon - until) > slack_;
             until = *options_.horizon;
         }
-        if (until - t > steps_->h0() + slack_ && !follows_inputs(t, until)) {
-            --level_;
-            equal_steps_ = 0;
-            return;
+        int level = level_;
+        const bool approaches = odd && (until - t) * steps_->rate() > kManyRates;
+        if (approaches) {
+            level = std::min(level_, static_cast<int>(std::log2((until - t) / steps_->h0())));
+            until = t + std::ldexp(steps_->h0(), level);
+            odd = false;
         }
-        if (!(odd ? odd_step(until - t, until) : usual_step(until))) {
-            --level_;
-            equal_steps_ = 0;
-            return;
-        }
-        equal_steps_ = odd ? 0 : equal_steps_ + 1;
+        if (until - t > steps_->h0() + slack_ && !follows_inputs(t, until)) return shorten(level);
+        if (!(odd ? odd_step(until - t, until) : usual_step(level, until))) return shorten(level);
+        equal_steps_ = odd || approaches ? 0 : equal_steps_ + 1;
         if (const auto passages = echoes_.pass(until + slack_)) pass_echo(until, *passages);
+    }
+
+    void shorten(int level) {
+        level_ = level - 1;
+        equal_steps_ = 0;
     }
 
     void pass_echo(double t, int passages) {
@@ -307,19 +311,15 @@ private:
         return {system_, map.h, [&map](const VectorXd& input) { return VectorXd(map.all * input); }, to_node_, slack_};
     }
 
-    bool usual_step(double until) {
-        const ManyInputsStep& map = steps_->level(level_);
-        while (within_.size() <= std::size_t(level_)) within_.emplace_back();
-        auto& own = within_[std::size_t(level_)];
+    bool usual_step(int level, double until) {
+        const ManyInputsStep& map = steps_->level(level);
+        while (within_.size() <= std::size_t(level)) within_.emplace_back();
+        auto& own = within_[std::size_t(level)];
         if (!own) own.emplace(within(map));
         return advance({map.h, &map}, *own, until);
     }
 
     bool odd_step(double h, double until) {
-        if (h * steps_->rate() > kManyRates) {
-            const ManyInputsStep map = steps_->step(h);
-            return advance({h, &map}, within(map), until);
-        }
         const auto after = [&](const VectorXd& input) { return steps_->after(h, input, false); };
         return advance({h, nullptr}, WithinStep(system_, h, after, to_node_, slack_), until);
     }

@@ -26,15 +26,16 @@ public:
     double h0() const { return h0_; }
     /// The step of length h0 2^level, computed once.
     const ManyInputsStep& level(int level);
-    /// The step of any length, by Taylor's series and doubling.
-    ManyInputsStep step(double h) const;
-    /// The states after a step of any length, by Taylor's series: less work for a length of few rates that is used
-    /// once. `input` as of ManyInputsStep::all; without `constant` for c = 0.
+    /// The states after a step of any length, by Taylor's series: less work for a length that is used once. `input` as
+    /// of ManyInputsStep::all; without `constant` for c = 0.
     Eigen::VectorXd after(double h, const Eigen::VectorXd& input, bool constant) const;
     /// A bound of the rates of F, whatever the units of its states.
     double rate() const { return rate_; }
 
 private:
+    /// The step of any length, by Taylor's series and doubling.
+    ManyInputsStep step(double h) const;
+
     Eigen::MatrixXd F_, G_;
     Eigen::VectorXd c_;
     double h0_, rate_;

@@ -14,7 +14,7 @@ std::string write_certificate(const Certificate& certificate);
 
 /// The members `plant`, `structure`, `Tf`, `Ms`, `Mt`, `design` and `upper` of the object that is open.
 void write_problem(const CertificateProblem& problem, Writer& out);
-/// Of those members. Throws Json::exception for others.
+/// Reads those members. Throws Json::exception for others.
 CertificateProblem read_problem(const Json& json);
 
 /// "pi", "pid_fixed" or "pid_tied".

@@ -8,7 +8,7 @@
 
 namespace tunewright::api {
 
-/// Of a job that came to no result: it was stopped, or failed with the problem.
+/// The outcome of a job without a result: it was stopped, or failed with the problem.
 inline JobOutcome without_result(std::string method, const Problem& problem, bool stopped) {
     JobOutcome outcome;
     outcome.method = std::move(method);

@@ -22,8 +22,10 @@ std::variant<ScoreAnswer, Problem> scored(const std::vector<score::Problem>& pro
         return to_problem(Error{ErrorKind::invalid_argument, "problems",
                                 "No problem of the library is meant. See docs/problems.md for their names."});
     auto found = score::score(problems, settings, control);
-    if (!found) return to_problem(found.error());
-    return ScoreAnswer{name, std::move(*found)};
+    if (found) return ScoreAnswer{name, std::move(*found)};
+    Error error = found.error();
+    if (!error.where.empty()) error.where = "tune/" + error.where;
+    return to_problem(error);
 }
 
 std::variant<ScoreAnswer, Problem> of_rule(const ScoreRequest& request, const RunControl& control) {

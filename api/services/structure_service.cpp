@@ -190,7 +190,7 @@ std::size_t chosen_pairing(const structure::GainAnalysis& gains, const Interacti
                        gains.pairings.begin());
 }
 
-/// What the controllers of a request are designed and judged with.
+/// The data with which a request's controllers are designed and judged.
 struct InteractionTask {
     const InteractionRequest& request;
     const structure::PlantMatrix& plants;
@@ -301,7 +301,7 @@ std::optional<Error> add_controllers(const PlainDesign& plain, const Interaction
     return std::nullopt;
 }
 
-/// What the request compares with.
+/// The controllers with which the request compares.
 std::optional<Error> add_compared(const PlainDesign& plain, const InteractionTask& task, InteractionAnswer& out) {
     const auto add = [&](Expected<ComparedControllers> one) -> std::optional<Error> {
         if (!one) return one.error();
@@ -337,7 +337,7 @@ std::optional<Error> add_compared(const PlainDesign& plain, const InteractionTas
     return add(compared("baseline", known(task.request.baseline->given), "", task));
 }
 
-/// Those about the decoupler of the answer, or about the best of those that were compared.
+/// Conclusions about the answer's decoupler, or about the best of the compared ones.
 void add_decoupler_conclusions(InteractionAnswer& out) {
     const DecouplingView* view = out.decoupling ? &*out.decoupling : nullptr;
     constexpr double kUnknown = std::numeric_limits<double>::infinity();

@@ -44,9 +44,11 @@ void judge(const Problem& problem, const Evaluation& evaluation, ProblemScore& o
     out.status = holds(out.Ms, problem.Ms) && holds(out.Mt, problem.Mt) ? Status::kept : Status::limits_broken;
 }
 
-ProblemScore score_of(const Problem& problem, const SettingsFor& settings) {
+Expected<ProblemScore> score_of(const Problem& problem, const SettingsFor& settings) {
     ProblemScore out{.name = problem.name, .tau = tau_of(problem.plant), .controller = {}, .why = {}};
     auto pid = settings(problem);
+    // An argument that is wrong by itself is the request's fault, not the problem's.
+    if (!pid && pid.error().kind == ErrorKind::invalid_argument) return pid.error();
     if (!pid) {
         out.why = pid.error().message;
         return out;
@@ -132,12 +134,16 @@ const char* to_string(Status status) {
 }
 
 Expected<Score> score(const std::vector<Problem>& problems, const SettingsFor& settings, const RunControl& control) {
-    Score out;
-    out.problems.resize(problems.size());
+    std::vector<Expected<ProblemScore>> scores(problems.size(), ProblemScore{});
     parallel_for(control.spread, int(problems.size()), [&](int i) {
-        if (!control.stop.stop_requested()) out.problems[std::size_t(i)] = score_of(problems[std::size_t(i)], settings);
+        if (!control.stop.stop_requested()) scores[std::size_t(i)] = score_of(problems[std::size_t(i)], settings);
     });
     if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The scoring was stopped."};
+    Score out;
+    for (auto& one : scores) {
+        if (!one) return one.error();
+        out.problems.push_back(std::move(*one));
+    }
     count(out);
     add_profile(out);
     add_range(out);

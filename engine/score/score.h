@@ -68,7 +68,7 @@ struct Score {
 /// Kp, Ti and Td for a problem. The filter of the answer is the problem's own, because the bound is about it.
 using SettingsFor = std::function<Expected<IdealPid>(const Problem& problem)>;
 
-/// Errors: cancelled if the control stops it.
+/// Errors: cancelled if the control stops it; an invalid_argument of the settings.
 Expected<Score> score(const std::vector<Problem>& problems, const SettingsFor& settings, const RunControl& control);
 
 }  // namespace tunewright::score

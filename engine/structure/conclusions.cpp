@@ -75,7 +75,7 @@ std::optional<double> gain_of(double without, double with) {
     return without / with;
 }
 
-/// What a cascade is for: the IAE after inner loads, or the cost of a joint design.
+/// The purpose of a cascade: the IAE after inner loads, or the cost of a joint design.
 double weighed(const LoadFigures& inner, const LoadFigures& outer, const CascadeDesign& design) {
     if (!design.joint) return or_infinite(inner.IAE);
     return (design.weight_inner > 0 ? design.weight_inner * or_infinite(inner.IAE) : 0) +

@@ -159,7 +159,7 @@ std::vector<double> grid_of(const DecoupledPlants& loops, const Fineness& finene
     for (const auto& row : loops.plants)
         for (const auto& plant : row)
             if (plant) paths.push_back(&*plant);
-    // What the decoupler adds up turns once around its own loop.
+    // The decoupler's sums turn once around its own loop.
     double delay = 0;
     for (const auto& row : loops.decoupling)
         for (const auto& element : row)

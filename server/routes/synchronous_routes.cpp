@@ -171,7 +171,7 @@ SyncCall of_product(api::Answer (*work)(std::string_view, std::string_view)) {
     return [work](const Call& call, const RunControl&) { return work(call.path.at("id"), call.request.body); };
 }
 
-/// Of a job whose result holds a certificate.
+/// The certificate's file of a job whose result holds a certificate.
 api::Answer certificate_of(JobService& jobs, const Call& call, const RunControl& control) {
     const auto view = jobs.find(call.path.at("id"));
     if (!view || !may_see(call.request, view->job)) return api::refusal(http::problem(404, "There is no such job."));

@@ -261,6 +261,11 @@ TEST(Design, ACertificateBoundsTheOptimum) {
         EXPECT_GE(certificate["lower"].get<double>(), 0.99 * IAE * (1 - 1e-4));
         EXPECT_LT(certificate["lower"].get<double>(), IAE);
         EXPECT_EQ(certificate["root"]["high"].contains("Td"), kind == std::string("PID"));
+        const Json& verdict = live["controllers"][0]["verdict"];
+        const auto proved = std::ranges::find(verdict, Json("proved"), [](const Json& one) { return one["code"]; });
+        ASSERT_NE(proved, verdict.end());
+        EXPECT_EQ((*proved)["figures"]["gap"], certificate["gap"]);
+        EXPECT_THAT((*proved)["text"].get<std::string>(), HasSubstr("best possible " + std::string(kind)));
     }
 }
 

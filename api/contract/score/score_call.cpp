@@ -117,7 +117,7 @@ void check_score(const Json& value, ScoreRequest& request, Reader& reader) {
     if (request.tune.has_value() == !request.settings.empty())
         reader.fault_at("tune", "Give either tune, a method such as formula, or settings, the settings of problems.");
     if (request.tune && request.tune->of_all())
-        reader.fault_at("tune/method", "A score is about one method; name it, such as simc.");
+        reader.fault_at("tune", "A score is about one method; name it, such as simc.");
     (void)value;
 }
 

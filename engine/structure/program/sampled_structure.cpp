@@ -154,7 +154,7 @@ public:
         return out;
     }
 
-    /// Of a response that rests: empty if it does so away from its target.
+    /// The final integral of a response that rests; empty if it does so away from its target.
     static std::optional<double> final_integral(const std::vector<ResponseNode>& nodes, double target) {
         const Extremes extremes = extremes_of_y(nodes);
         const double largest = std::max({std::abs(target), extremes.max, -extremes.min});

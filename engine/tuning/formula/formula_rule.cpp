@@ -80,8 +80,10 @@ struct Formula {
     SyntaxTree tree;
 };
 
-/// Those that are given.
+/// The formulas that are given.
 Expected<std::vector<Formula>> parsed(const FormulaOptions& options) {
+    if (options.Kp.empty())
+        return Error{ErrorKind::invalid_argument, "Kp", "Give a formula for Kp, such as T/(2*K*L)."};
     std::vector<Formula> out;
     for (const auto& [name, formula] : {std::pair{"Kp", &options.Kp}, {"Ti", &options.Ti}, {"Td", &options.Td}}) {
         if (formula->empty()) continue;

@@ -18,6 +18,7 @@
 #include "api/contract/request.h"
 #include "api/contract/result/identified_model.h"
 #include "api/contract/result/result.h"
+#include "api/contract/result/verify_call.h"
 #include "api/contract/score/score_call.h"
 #include "api/contract/structure/cascade_call.h"
 #include "api/contract/structure/feedforward_call.h"
@@ -108,6 +109,8 @@ std::string openapi_json() {
         level_request_contract().schema(book);
         score_request_contract().schema(book);
         score_answer_contract().schema(book);
+        verify_request_contract().schema(book);
+        verify_answer_contract().schema(book);
         level_answer_contract().schema(book);
         feedforward_request_contract().schema(book);
         feedforward_answer_contract().schema(book);

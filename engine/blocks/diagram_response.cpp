@@ -177,7 +177,7 @@ private:
         if (equal_steps_ < 2) return;
         const std::size_t last = out_.t_.size() - 1;
         const double h = out_.t_[last] - out_.t_[last - 2];
-        double worst = 0;
+        double worst = worst_within_;
         for (int i = 0; i < out_.signals_; ++i) {
             if (!(largest_[i] > 0)) continue;
             const double middle = hermite_midpoint(h, out_.at(last - 2, i), out_.at(last, i));
@@ -262,6 +262,7 @@ private:
             end_slope_[Index(k)] = end.slope;
         }
         step_to_end(step);
+        worst_within_ = 0;
         if (!within.empty()) {
             compute_node(next_, end_, end_slope_);
             const auto& unknown = within.signals();
@@ -276,8 +277,11 @@ private:
             }
             const VectorXd ends = within.solve(left_);
             for (Index k = 0; k < count; ++k) {
-                end_[Index(unknown[std::size_t(k)])] = ends[k];
-                end_slope_[Index(unknown[std::size_t(k)])] = ends[count + k];
+                const Index signal = Index(unknown[std::size_t(k)]);
+                const Signal end{ends[k], ends[count + k]};
+                end_[signal] = end.value;
+                end_slope_[signal] = end.slope;
+                note_parabola(step.h, signal, end);
             }
             step_to_end(step);
         }
@@ -286,6 +290,15 @@ private:
         v_slope_.swap(end_slope_);
         add_node(until);
         return true;
+    }
+
+    /// The error of a parabola in the middle of the step, from the slope at its start.
+    void note_parabola(double h, Index signal, const Signal& end) {
+        const double largest = largest_[system_.delayed[std::size_t(signal)].from];
+        if (!(largest > 0)) return;
+        const double error =
+            value_at(parabola(h, v_[signal], end), 0.5 * h) - hermite_midpoint(h, {v_[signal], v_slope_[signal]}, end);
+        worst_within_ = std::max(worst_within_, std::abs(error) / largest);
     }
 
     /// The states at the end of a step, from cubics through both ends of the delayed signals.
@@ -339,6 +352,7 @@ private:
     std::optional<ManyInputsPropagator> steps_;
     std::vector<std::optional<WithinStep>> within_;  // of each level
     double slack_ = 0;
+    double worst_within_ = 0;  // error of the parabolas of the last step, over each signal's largest value
     int level_ = 0, equal_steps_ = 0;
 };
 

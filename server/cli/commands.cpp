@@ -17,6 +17,8 @@
 #include "api/report/report.h"
 #include "api/report/terminal.h"
 #include "api/service.h"
+#include "api/services/verify/verify_call.h"
+#include "server/cli/verify_table.h"
 #include "server/clock.h"
 #include "server/config.h"
 #include "server/json_text.h"
@@ -196,6 +198,18 @@ int certificate(const ResultWords& command) {
     const auto written = api::certificate_file({result, request}, command.controller, control);
     if (const auto* problem = std::get_if<api::Problem>(&written)) return write_problem(*problem, {}, command.file);
     return write_text(std::get<std::string>(written));
+}
+
+int verify(const VerifyCommand& command) {
+    std::string result, request;
+    if (const auto refused = read_texts(command.result, result, request)) return *refused;
+    const auto verified = api::verify_result({result, request}, {});
+    if (const auto* problem = std::get_if<api::Problem>(&verified))
+        return write_problem(*problem, command.output, command.result.file);
+    const auto& answer = std::get<api::VerifyAnswer>(verified);
+    const int written = write_answer(api::verify_json(answer), command.output,
+                                     [&answer](std::string_view) { return verify_table(answer); });
+    return answer.differing() > 0 ? 1 : written;
 }
 
 int report(const ResultWords& command) {

@@ -79,6 +79,13 @@ int code(const CodeCommand& command);
 /// The answer of GET /v1/jobs/{id}/controllers/{index}/certificate.
 int certificate(const ResultWords& command);
 
+struct VerifyCommand {
+    ResultWords result;  ///< every controller is verified
+    OutputWords output;
+};
+/// The answer of POST /v1/verify; returns 1 also if a figure differs.
+int verify(const VerifyCommand& command);
+
 /// The answer of GET /v1/jobs/{id}/report.html.
 int report(const ResultWords& command);
 

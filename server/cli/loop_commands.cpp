@@ -212,6 +212,17 @@ void add_loop_commands(CommandTree& tree) {
     add_result_options(code_app, coding.result, "File of the request, for the head comment and its sample time");
     add_code_words(code_app, coding.words);
 
+    VerifyCommand& verifying = tree.keep<VerifyCommand>();
+    CLI::App& verify_app = tree.add("verify", "Every figure of a result computed again by a second, independent way",
+                                    [&] { return verify(verifying); });
+    verify_app
+        .add_option("file", verifying.result.file,
+                    "The output of tune --with-request, or a job; - reads standard input")
+        ->required();
+    verify_app.add_option("--request", verifying.result.request, "File of the request, if the result is without it")
+        ->type_name("FILE");
+    add_output_options(verify_app, verifying.output, true);
+
     ResultWords& proving = tree.keep<ResultWords>();
     CLI::App& proof_app = tree.add("certificate", "The proof of a result with certify, as a file for the checker",
                                    [&] { return certificate(proving); });

@@ -55,9 +55,9 @@ struct BatchLimits {
 void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, LongRequestSlots& places,
                       ComputeSlots& listers, Executor& lane, NotifyPolicy& policy, const BatchLimits& limits);
 
-/// /v1/evaluate, /v1/design, /v1/frontier, /v1/range, /v1/check, /v1/identify, /v1/experiments/... and the conversions
-/// below /v1/controllers, and the certificates of /v1/jobs/{id}/controllers/{index}: computed while the client waits,
-/// when its turn has come, with a deadline, or until `closing`. /v1/plants/parse: at once.
+/// /v1/evaluate, /v1/design, /v1/frontier, /v1/range, /v1/check, /v1/verify, /v1/identify, /v1/experiments/... and the
+/// conversions below /v1/controllers, and the certificates of /v1/jobs/{id}/controllers/{index}: computed while the
+/// client waits, when its turn has come, with a deadline, or until `closing`. /v1/plants/parse: at once.
 void add_synchronous_routes(http::Router& router, JobService& jobs, ComputeSlots& turns, Timer& timer,
                             SpareCores& spare_cores, const std::stop_token& closing);
 

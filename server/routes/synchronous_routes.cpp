@@ -14,6 +14,7 @@
 #include "api/services/range_service.h"
 #include "api/services/score_service.h"
 #include "api/services/structure_service.h"
+#include "api/services/verify/verify_call.h"
 #include "server/clock.h"
 #include "server/http/app/negotiation.h"
 #include "server/http/app/problems.h"
@@ -38,6 +39,7 @@ constexpr std::chrono::seconds kStructureTime{20};
 constexpr std::chrono::seconds kIdentifyTime{30};
 constexpr std::chrono::seconds kCheckTime{30};
 constexpr std::chrono::seconds kScoreTime{60};
+constexpr std::chrono::seconds kVerifyTime{60};
 constexpr std::chrono::seconds kRelayTime{10};
 constexpr std::chrono::seconds kConversionTime{10};
 constexpr std::chrono::seconds kCertificateTime{120};
@@ -225,6 +227,7 @@ void add_synchronous_routes(http::Router& router, JobService& jobs, ComputeSlots
     add("/v1/interaction", of_body(api::interaction_call), kStructureTime);
     add("/v1/predictor", of_body(api::predictor_call), kStructureTime);
     add("/v1/score", of_body(api::score_call), kScoreTime);
+    add("/v1/verify", of_body(api::verify_call), kVerifyTime);
     add("/v1/check", of_body(api::check_call), kCheckTime);
     add("/v1/identify", of_body(api::identify_call), kIdentifyTime);
     add("/v1/records/controller", of_body(api::controller_record_call), kIdentifyTime);

@@ -76,8 +76,10 @@ TEST(ScoreCall, EveryFaultNamesItsPlaceAndItsCure) {
     refused(rule({{"method", "formula"}}), "/tune/Kp", "Give a formula");
     refused(rule({{"method", "formula"}, {"Kp", "T/(2*K"}}), "/tune/Kp", "character");
     refused(rule({{"method", "formula"}, {"Kp", "T/(2*theta)"}}), "/tune/Kp", "a formula may use K, T");
-    refused({{"settings", {{{"problem", "amigo/none"}, {"Kp", 1}, {"Ti", 1}}}}}, "/settings/0/problem", "docs/problems.md");
-    refused({{"settings", {{{"problem", "amigo/lag-delay/1/pi/1.4"}, {"Kp", 1}, {"Ti", -1}}}}}, "/settings/0/Ti", "> 0");
+    refused({{"settings", {{{"problem", "amigo/none"}, {"Kp", 1}, {"Ti", 1}}}}}, "/settings/0/problem",
+            "docs/problems.md");
+    refused({{"settings", {{{"problem", "amigo/lag-delay/1/pi/1.4"}, {"Kp", 1}, {"Ti", -1}}}}}, "/settings/0/Ti",
+            "> 0");
     refused({{"tune", {{"method", "simc"}}}, {"problems", {{"name", "none/"}}}}, "/problems", "No problem");
 }
 

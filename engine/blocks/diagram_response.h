@@ -21,7 +21,7 @@ struct DiagramStep {
 };
 
 struct DiagramResponseOptions {
-    double tolerance = 1e-6;             ///< of the interpolation, relative to each signal's largest value
+    double tolerance = 1e-7;             ///< of the interpolation, relative to each signal's largest value
     double settled = 1e-6;               ///< ends when every signal stays within this fraction of its largest value
     std::optional<double> horizon = {};  ///< ends here instead
     int max_steps = 60000;

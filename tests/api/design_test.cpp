@@ -1,6 +1,7 @@
 // POST /v1/design and /v1/frontier: answers, their form, and refusals.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -265,7 +266,6 @@ TEST(Design, ACertificateBoundsTheOptimum) {
         const auto proved = std::ranges::find(verdict, Json("proved"), [](const Json& one) { return one["code"]; });
         ASSERT_NE(proved, verdict.end());
         EXPECT_EQ((*proved)["figures"]["gap"], certificate["gap"]);
-        EXPECT_THAT((*proved)["text"].get<std::string>(), HasSubstr("best possible " + std::string(kind)));
     }
 }
 

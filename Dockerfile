@@ -12,6 +12,7 @@ COPY CMakeLists.txt CMakePresets.json ./
 COPY engine engine
 COPY api api
 COPY server server
+COPY bench/problems/problems.json bench/problems/
 RUN cmake --preset release -DTUNEWRIGHT_TESTS=OFF && cmake --build --preset release --target tunewright \
     && strip build/release/tunewright && deploy/container/libraries build/release/tunewright >libraries.txt
 
@@ -22,6 +23,7 @@ COPY web/package.json web/package-lock.json web/.npmrc web/
 RUN script/bootstrap page
 COPY web web
 COPY docs docs
+COPY bench/problems/problems.json bench/problems/
 RUN cd web && npm run build && npm ls --omit=dev >../page-packages.txt
 
 FROM debian:$DEBIAN-slim

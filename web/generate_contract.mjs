@@ -10,14 +10,14 @@ import openapiTS, { astToString } from "openapi-typescript";
 /** Types that the page sends; an answer with one of them contains it as sent. */
 const SENT = [
   "CascadeRequest", "CheckRequest", "FeedforwardRequest", "IdentifyRequest", "InteractionRequest", "LevelRequest", "PlantQuestion",
-  "PredictorRequest", "RangeRequest", "RelayRequest", "TuningRequest",
+  "PredictorRequest", "RangeRequest", "RelayRequest", "ScoreRequest", "TuningRequest",
 ];
 
 /** Types of answers; the types to which both refer are included. */
 const ANSWERED = [
   "Batch", "BatchCheck", "CascadeAnswer", "CheckResult", "ControllerProduct", "ControllerRecordAnswer", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "FeedforwardAnswer", "Frontier", "Health",
   "IdentifyAnswer", "InteractionAnswer", "Job", "JobList", "LevelAnswer", "MethodDescription", "PlantAnswer", "PredictorAnswer", "PreviewAnswer", "Problem", "RangeExample", "RangeResult",
-  "RelayAnswer", "ScheduleSettingsAnswer", "SettingsAnswer", "TuningResult",
+  "RelayAnswer", "ScheduleSettingsAnswer", "ScoreAnswer", "SettingsAnswer", "TuningResult",
 ];
 
 /** Types that the page fills from a description and reads by name, each with the member that holds its kind. */

@@ -15,6 +15,7 @@ export function header(store: Store, tools: HTMLElement[]): HTMLElement {
     range: h("a", { href: "#/range" }, "Range"),
     structure: h("a", { href: "#/structure" }, "Structure"),
     check: h("a", { href: "#/check" }, "Check"),
+    rules: h("a", { href: "#/rules" }, "Rules"),
     design: h("a", { href: "#/", hidden: true }, "Design"),
     compare: h("a", { href: "#/", hidden: true }, "Compare"),
     jobs: h("a", { href: "#/jobs" }, "Jobs"),

@@ -16,6 +16,7 @@ export type Route =
   | { screen: "range"; example: string; job: string | null }
   | CheckRoute
   | StructureRoute
+  | RulesRoute
   | { screen: "relay"; plant: string; values: Record<string, string> }
   /** `values`: the positions of its sliders, if they differ from the proposal. `step`: the user's own step, if it was
       typed. */
@@ -63,6 +64,12 @@ export interface StructureRoute {
   id: string;
   values: Record<string, string>;
   job: string | null;
+}
+
+/** A rule and its problems, as texts; none: the current content. */
+export interface RulesRoute {
+  screen: "rules";
+  values: Record<string, string>;
 }
 
 const LIST_PARTS = ["sort", "cause", "owner", "text"] as const;
@@ -125,6 +132,7 @@ export function parseRoute(hash: string): Route {
   if (parts[0] === "range") return { screen: "range", example: parts[1] ?? "", job: null };
   if (parts[0] === "check") return checkRoute(null, values);
   if (parts[0] === "structure") return { screen: "structure", id: parts[1] ?? "", values, job: null };
+  if (parts[0] === "rules") return { screen: "rules", values };
   if (parts[0] === "relay") return { screen: "relay", plant: parts[1] ?? "", values };
   if (parts[0] === "jobs" && !parts[1]) return { screen: "jobs", text: values["q"] ?? "" };
   if (parts[0] === "batches" && parts[1] && parts[2] === "check") return checkRoute({ kind: "batch", id: parts[1] }, values);
@@ -208,6 +216,10 @@ export function formatRoute(route: Route): string {
       if (route.job !== null) return `#/jobs/${encodeURIComponent(route.job)}/structure`;
       const query = new URLSearchParams(route.values).toString();
       return `#/structure${route.id === "" ? "" : `/${encodeURIComponent(route.id)}`}${query ? `?${query}` : ""}`;
+    }
+    case "rules": {
+      const query = new URLSearchParams(route.values).toString();
+      return `#/rules${query ? `?${query}` : ""}`;
     }
     case "example":
       return `#/examples/${encodeURIComponent(route.id)}`;

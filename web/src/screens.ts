@@ -11,8 +11,9 @@ import { isStructureRequest } from "./api/structure.ts";
 import type { JobFlow } from "./job_flow.ts";
 import type { RangeView } from "./range/view.ts";
 import { addressOfJob, addressOfStructure, entryState, formatRoute, keepInEntry, parseRoute, rewriteAddress, showsJob, showsStart, WHOLE_LIST } from "./routes.ts";
-import type { CheckRoute, JobRoute, Route, StructureRoute } from "./routes.ts";
+import type { CheckRoute, JobRoute, Route, RulesRoute, StructureRoute } from "./routes.ts";
 import type { Store } from "./store.ts";
+import type { RulesView } from "./rules/view.ts";
 import type { StructureView } from "./structure/view.ts";
 import type { CandidateChoice } from "./views/cards/candidates_card.ts";
 import type { RelayView } from "./views/relay.ts";
@@ -48,6 +49,7 @@ export function screens(
   let range: RangeView | null = null;
   let check: CheckView | null = null;
   let structure: StructureView | null = null;
+  let rules: RulesView | null = null;
   /** The loop on Start whose plant the relay test uses; null: it has one of its own. */
   let relayOf: { units: Units | undefined; loop: number } | null = null;
   const ofStart = (): boolean => relayOf !== null && relayOf.loop === startScreen().loops();
@@ -58,7 +60,7 @@ export function screens(
 
   function mount(next: View, title: string, focus: boolean): void {
     if (view !== next) {
-      if (view && ![start, relay, range, check, structure].includes(view as never)) view.dispose();
+      if (view && ![start, relay, range, check, structure, rules].includes(view as never)) view.dispose();
       if (next === start) start.takeBack();
       view = next;
       stage.replaceChildren(next.element);
@@ -177,6 +179,19 @@ export function screens(
     });
     mount(structure, "Structure · Tunewright", focus);
     structure.open(route);
+  }
+
+  async function openRules(route: RulesRoute, focus: boolean): Promise<void> {
+    const part = await later(import("./rules/view.ts"), route, "Rules", focus);
+    if (!part) return;
+    rules ??= part.rulesView(store, announce, {
+      onQuestion(next) {
+        rewriteAddress(next, next);
+      },
+      onTune: flow.tune,
+    });
+    mount(rules, "Rules · Tunewright", focus);
+    rules.open(route);
   }
 
   /** Kept too, with its typed text. */
@@ -405,6 +420,7 @@ export function screens(
     if (route.screen === "range") return void openRange(route, !first);
     if (route.screen === "check") return void openCheck(route, !first);
     if (route.screen === "structure") return void openStructure(route, !first);
+    if (route.screen === "rules") return void openRules(route, !first);
     if (route.screen === "relay") return void openRelay(route, !first);
     if (route.screen === "docs") return void openApi(route, !first);
     if (route.screen === "methods") return void openMethods(route, !first);

@@ -822,6 +822,7 @@ export type components = {
       upper: number;
       lower: number;
       gap: number;
+      asked_gap: number;
       complete: boolean;
       root: {
         low: {
@@ -838,6 +839,19 @@ export type components = {
         };
       };
       boxes: number;
+      problem: {
+        plant: {
+          num: number[];
+          den: number[];
+          L: number;
+        };
+        structure: "pi" | "pid_fixed" | "pid_tied";
+        Tf: number;
+        Ms: number;
+        Mt: number;
+        upper: number;
+        design: number[];
+      };
       seconds: number;
     };
     Frontier: {
@@ -1832,6 +1846,56 @@ export type components = {
       Kc: number;
       Ti?: number;
     };
+    ScoreRequest: {
+      name?: string;
+      tune?: components["schemas"]["Method"];
+      settings?: components["schemas"]["SubmittedSettings"][];
+      problems?: components["schemas"]["ProblemChoice"];
+    };
+    SubmittedSettings: {
+      problem: string;
+      Kp: number;
+      Ti: number;
+      Td?: number;
+    };
+    ProblemChoice: {
+      name?: string;
+      structure?: "pi" | "pid_tied" | "pid_fixed";
+      Ms?: number;
+    };
+    ScoreAnswer: {
+      name: string;
+      kept: number;
+      limits_broken: number;
+      unstable: number;
+      no_settings: number;
+      median_ratio?: number;
+      worst_ratio?: number;
+      range?: components["schemas"]["ScoreRange"];
+      profile: components["schemas"]["ProfilePoint"][];
+      problems: components["schemas"]["ProblemScore"][];
+    };
+    ScoreRange: {
+      tau_low: number;
+      tau_high: number;
+      problems: number;
+      worst_ratio: number;
+    };
+    ProfilePoint: {
+      ratio: number;
+      share: number;
+    };
+    ProblemScore: {
+      name: string;
+      status: "kept" | "limits-broken" | "unstable" | "no-settings";
+      tau: number;
+      controller?: components["schemas"]["Controller"];
+      Ms?: number;
+      Mt?: number;
+      IAE?: number;
+      ratio?: number;
+      why?: string;
+    };
     LevelAnswer: {
       structure: "level";
       design: components["schemas"]["LevelDesign"];
@@ -2614,6 +2678,13 @@ export type StructureTyping = components['schemas']['StructureTyping'];
 export type LevelRequest = components['schemas']['LevelRequest'];
 export type FlowLoop = components['schemas']['FlowLoop'];
 export type LevelSettings = components['schemas']['LevelSettings'];
+export type ScoreRequest = components['schemas']['ScoreRequest'];
+export type SubmittedSettings = components['schemas']['SubmittedSettings'];
+export type ProblemChoice = components['schemas']['ProblemChoice'];
+export type ScoreAnswer = components['schemas']['ScoreAnswer'];
+export type ScoreRange = components['schemas']['ScoreRange'];
+export type ProfilePoint = components['schemas']['ProfilePoint'];
+export type ProblemScore = components['schemas']['ProblemScore'];
 export type LevelAnswer = components['schemas']['LevelAnswer'];
 export type LevelDesign = components['schemas']['LevelDesign'];
 export type FeedforwardRequest = components['schemas']['FeedforwardRequest'];

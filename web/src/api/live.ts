@@ -3,7 +3,7 @@
 import { call } from "./client.ts";
 import { settingsOf } from "./evaluate.ts";
 import { deleteJob, postJobAndWait } from "./jobs.ts";
-import type { Controller, Entry, Frontier, Implement, Model, OwnStep, Plant, Result, TuningRequest } from "./types.ts";
+import type { Controller, Entry, Frontier, Implement, Model, OwnStep, Plant, Result, TuneEntry, TuningRequest } from "./types.ts";
 
 /** The subject of a call: a plant, or the model of a record with its region, so that the record is not identified
     again. */
@@ -35,10 +35,17 @@ export function callSubject(request: TuningRequest, result: Result): CallSubject
   return plant ? { plant } : null;
 }
 
+/** A proof takes long, and a design that follows a slider has none. */
+function withoutCertificates(request: TuningRequest): TuningRequest {
+  const { tune } = request;
+  if (!Array.isArray(tune) || !tune.some((entry) => "certify" in entry)) return request;
+  return { ...request, tune: tune.map(({ certify: _certify, ...entry }) => entry as TuneEntry) };
+}
+
 /** The body of POST /v1/design for a job's request: without the terms on which a job is run, and with its record's
     model and settings. */
 export function designBody(request: TuningRequest, result: Result): Record<string, unknown> {
-  const { timeout_s: _timeout, priority: _priority, notify: _notify, ...asked } = request;
+  const { timeout_s: _timeout, priority: _priority, notify: _notify, ...asked } = withoutCertificates(request);
   const model = asked.record ? sentBack(result.model) : null;
   if (!model) return asked;
   const { record: _record, identify: _identify, baseline, ...rest } = asked;

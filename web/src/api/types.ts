@@ -6,6 +6,7 @@ import type { Schema } from "./method.ts";
 export type {
   Batch,
   BatchCheck,
+  Certificate,
   CheckCurve,
   CheckLoop,
   CheckRequest,

@@ -132,6 +132,12 @@ export function withLambda(request: TuningRequest, result: Result, index: number
   return withTune(request, result, index, { ...Object.fromEntries(kept), method: entry.method, lambda, curve: true });
 }
 
+/** With a proof that no other controller is better by more than `gap`, a share. `index`: of the entry in the result. */
+export function withCertificate(request: TuningRequest, result: Result, index: number, gap: number): TuningRequest {
+  const entry = tuneEntryOf(request, result, index);
+  return entry ? withTune(request, result, index, { ...entry, certify: { gap } }) : request;
+}
+
 /** "all" as an explicit list, each variant with its options. */
 const everyMethod = (result: Result): TuneEntry[] =>
   result.controllers

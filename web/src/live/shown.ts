@@ -43,7 +43,8 @@ export function questionOf(from: Modifiable, tune: TuneEntry, held: boolean): Re
   const body = designBody(alteredBy(from, tune), from.result);
   if (!held) return body;
   const { controllers: _given, ...others } = withHeldPoints(body);
-  return { ...others, tune: [tune] };
+  const { certify: _certify, ...quick } = tune;
+  return { ...others, tune: [quick] };
 }
 
 /** The entries of the job made by the same row of its request. */
@@ -170,9 +171,9 @@ function manualEntry(entry: Entry, from: Entry, { tune }: Point): Entry {
   return { ...entry, method: from.method, options: Object.fromEntries(limits), title: `${from.title ?? from.method}, by hand` };
 }
 
-/** The duration of the computation of the modified row, ms. */
+/** The duration of the computation of the modified row, ms, without that of a proof, which does not follow a slider. */
 const costOf = (entries: readonly Entry[]): number =>
-  entries.reduce((sum, entry) => sum + (entry.method === "baseline" ? 0 : (entry.compute_ms ?? 0)), 0);
+  entries.reduce((sum, entry) => sum + (entry.method === "baseline" ? 0 : Math.max(0, (entry.compute_ms ?? 0) - 1000 * (entry.certificate?.seconds ?? 0))), 0);
 
 export const costOfRow = (from: Modifiable): number =>
   costOf(rowMates(from).map((index) => from.result.controllers[index]!));

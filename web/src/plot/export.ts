@@ -31,7 +31,7 @@ export function toMarkup(tree: TreeNode, palette: Palette): string {
 }
 
 function legend(frame: Frame, width: number): TreeNode[] {
-  const seen = new Map(frame.panes.flatMap((pane) => pane.traces.map((trace) => [trace.name, trace] as const)));
+  const seen = new Map(frame.panes.flatMap((pane) => pane.traces.filter(({ quiet }) => !quiet).map((trace) => [trace.name, trace] as const)));
   let x = 14;
   const nodes: TreeNode[] = [];
   for (const [name, { look, thin }] of seen) {
@@ -82,12 +82,16 @@ export function frameToSvg(frame: Frame, view: View, width: number, height: numb
   return toMarkup(document, palette);
 }
 
+/** The points of a pane without traces, as rows of the table. */
+const pointRows = (pane: Frame["panes"][number]): (string | number | null)[][] =>
+  (pane.marks ?? []).flatMap((mark) => (mark.kind === "point" ? [[mark.label, pane.y.label, mark.x, mark.y]] : []));
+
 /** One table of all traces: x (and the parameter), then y; the first columns identify the trace of a row. */
 export function frameToRows(frame: Frame): { header: string[]; rows: (string | number | null)[][] } {
   const parametric = frame.panes.some((pane) => pane.traces.some((trace) => trace.parameter));
   const header = ["trace", "axis", ...(parametric ? [frame.cursorLabel] : []), frame.x.label, "value"];
   const rows = frame.panes.flatMap((pane) =>
-    pane.traces.flatMap((trace) =>
+    pane.traces.length === 0 ? pointRows(pane) : pane.traces.flatMap((trace) =>
       trace.x.map((x, index) => [
         trace.name,
         pane.y.label,

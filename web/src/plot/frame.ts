@@ -15,6 +15,8 @@ export interface Trace {
   grab?: boolean;
   /** Thin and dotted, in the look's colour: a companion of a line with the same look. */
   thin?: boolean;
+  /** One among many: without a name in the legend and at the cursor; table and exports have it. */
+  quiet?: boolean;
   x: readonly (number | null)[];
   y: readonly (number | null)[];
   /** The cursor's variable if it is not x: a parametric curve in a plane. */

@@ -426,7 +426,7 @@ export function createPlot(
 
 /** The names of a frame's first pane with their lines; for plots whose traces are in no other legend. */
 function paneLegend(frame: Frame): HTMLElement {
-  const traces = frame.panes[0]?.traces ?? [];
+  const traces = (frame.panes[0]?.traces ?? []).filter(({ quiet }) => !quiet);
   return h(
     "p",
     { class: "pane-legend" },

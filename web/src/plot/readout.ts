@@ -35,9 +35,9 @@ export function valueAt(box: PaneBox, point: { x: number; y: number }): number |
   return snap(box.pane.traces, box.x.toValue(point.x));
 }
 
-/** The sample of the first trace nearest to the value: a cursor is never between samples. */
+/** The sample of the first trace nearest to the value, of one with a name if there is any: a cursor is never between samples. */
 function snap(traces: Trace[], value: number): number {
-  const x = traces[0]?.x ?? [];
+  const x = (traces.find(({ quiet }) => !quiet) ?? traces[0])?.x ?? [];
   const index = nearestIndex(x, value);
   return index < 0 ? value : x[index]!;
 }
@@ -73,7 +73,7 @@ export function readings(frame: Frame, box: PaneBox, value: number): string[] {
   const { unit: ofPane } = partsOf(box.pane.y.label);
   const parts: string[] = [];
   let at: number | null = null;
-  for (const trace of box.pane.traces) {
+  for (const trace of box.pane.traces.filter(({ quiet }) => !quiet)) {
     const list = trace.parameter ?? trace.x;
     const index = nearestIndex(list, value);
     const y = trace.y[index];
@@ -105,7 +105,7 @@ export function cursorNodes(frame: Frame, box: PaneBox, value: number, figures: 
       }),
     );
   }
-  for (const trace of box.pane.traces) {
+  for (const trace of box.pane.traces.filter(({ quiet }) => !quiet)) {
     const index = nearestIndex(trace.parameter ?? trace.x, value);
     const px = box.x.toPixel(trace.x[index] ?? NaN);
     const py = box.y.toPixel(trace.y[index] ?? NaN);

@@ -10,7 +10,7 @@ import { LINEAR_NOTE, hasLinear } from "../charts/responses.ts";
 import { h, keepFocus } from "../dom.ts";
 import { readStep } from "../form/own_step.ts";
 import type { StepTexts } from "../form/own_step.ts";
-import { asksForAll, withLambda, withOwnStep } from "../form/tuning_request.ts";
+import { asksForAll, withCertificate, withLambda, withOwnStep } from "../form/tuning_request.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
 import { rangeJobCard } from "../range/job_result.ts";
@@ -108,7 +108,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     },
     onReading: (reading) => modified.waitFor(reading),
   });
-  const reports = reportCards(announce, { onRetune: retune, onTry: own.follow });
+  const reports = reportCards(announce, { onRetune: retune, onProve: prove, onTry: own.follow });
   const reportsAt = (place: "above" | "below") => reports.filter((card) => card.place === place).map((card) => card.element);
   const legend = createLegend(store);
   const plots = plotGrid(announce);
@@ -186,6 +186,13 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const request = screen.request ?? {};
     const index = asksForAll(request.tune) ? 0 : screen.index;
     await replace(withLambda(request, screen.result, screen.index, lambda, store.get().methods), index);
+  }
+
+  async function prove(gap: number): Promise<void> {
+    if (!finished || !screen) return;
+    const request = screen.request ?? {};
+    const index = asksForAll(request.tune) ? 0 : screen.index;
+    await replace(withCertificate(request, screen.result, screen.index, gap), index, "Proving");
   }
 
   /** Designs again in this job's place; a search that takes long shows its progress, and can be stopped. */
@@ -349,7 +356,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const listed = listedEntries(entries.length, drawn, index);
     // Rules and robustness of a nonlinear plant use its linear model.
     const linear = result.model?.plant ?? result.linear_model ?? job.request?.plant;
-    const reported = { name: names[index]!, entry: entries[index]!, model: linear, request: job.request, units };
+    const reported = { name: names[index]!, entry: entries[index]!, model: linear, request: job.request, stored: result === whole ? { job: job.id, index } : null, units };
     for (const card of reports) card.show(reported);
     own.show(ownShown(job, whole, index, names[index]!, units));
     if (model.childElementCount === 0) {

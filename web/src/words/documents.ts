@@ -13,6 +13,8 @@ export const DOCUMENTS: readonly Document[] = [
   { id: "symbols", title: "Symbols and units" },
   { id: "verdicts", title: "Verdicts: levels, codes, thresholds" },
   { id: "methods", title: "Tuning methods" },
+  { id: "problems", title: "Problems in PID design, and the score of a rule" },
+  { id: "proof", title: "Proof of an optimum" },
   { id: "controllers", title: "Products and their settings" },
   { id: "records", title: "Recorded tests" },
   { id: "relay", title: "Relay tests" },

@@ -296,7 +296,7 @@ const HOW_TO_WRITE: Partial<Record<FieldKind, string>> = {
   names: "Spaces between the names.",
 };
 
-function optionField(spec: FieldSpec, pointer: () => string | null, errors: FormErrors): Field<Control["input"]> {
+export function optionField(spec: FieldSpec, pointer: () => string | null, errors: FormErrors): Field<Control["input"]> {
   const hint = [spec.hint, HOW_TO_WRITE[spec.kind], spec.words.length > 0 ? `Also: ${spec.words.join(", ")}.` : ""]
     .filter(Boolean)
     .join(" ");

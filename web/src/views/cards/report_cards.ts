@@ -2,6 +2,8 @@
 // no such report.
 import type { Controller, Entry, Plant, TuningRequest } from "../../api/types.ts";
 import type { UnitNames } from "../../words/numbers.ts";
+import { certificateCard } from "./certificate_card.ts";
+import type { StoredEntry } from "./certificate_card.ts";
 import { emulationCard } from "./emulation_card.ts";
 import { rimcCard } from "./rimc_card.ts";
 import { tradeoffCard } from "./tradeoff_card.ts";
@@ -13,6 +15,8 @@ export interface ReportedEntry {
   /** The linear plant that rules and robustness use. */
   model: Plant | undefined;
   request: TuningRequest | undefined;
+  /** Its place in the job; null for a design that has moved away from it. */
+  stored: StoredEntry | null;
   units: UnitNames;
 }
 
@@ -28,11 +32,17 @@ type Announce = (sentence: string) => void;
 
 export interface ReportEvents {
   onRetune(lambda: number): Promise<void>;
+  /** Designs again, with a proof that no other is better by more than this share. */
+  onProve(gap: number): Promise<void>;
   /** Settings are tried by hand; null: no longer. */
   onTry(controller: Controller | null): void;
 }
 
 const CARDS: ((announce: Announce, events: ReportEvents) => ReportCard)[] = [
+  (_announce, events) => {
+    const card = certificateCard(events.onProve);
+    return { ...card, place: "above", show: ({ entry, stored, units }) => card.show(entry, stored, units) };
+  },
   (announce, events) => {
     const card = rimcCard(announce, events.onRetune);
     return { ...card, place: "above", show: ({ entry, model, units }) => card.show(entry, model, units) };

@@ -101,11 +101,12 @@ Conclusions conclusions_on(const CascadeFigures& figures, const CascadeDesign& l
     if (single != nullptr && single->stable) {
         const std::optional<double> gain = gain_of(weighed(single->inner_load, single->outer_load, limits),
                                                    weighed(figures.inner_load, figures.outer_load, limits));
-        if (gain)
-            out.push_back({*gain >= kWorthwhile ? cascade_pays : cascade_gains_little,
-                           {{"gain_inner", ratio(single->inner_load.IAE, figures.inner_load.IAE)},
-                            {"gain_outer", ratio(single->outer_load.IAE, figures.outer_load.IAE)},
-                            {"gain_setpoint", ratio(single->setpoint.IAE, figures.setpoint.IAE)}}});
+        const std::map<std::string, Figure> gains{{"gain_inner", ratio(single->inner_load.IAE, figures.inner_load.IAE)},
+                                                  {"gain_outer", ratio(single->outer_load.IAE, figures.outer_load.IAE)},
+                                                  {"gain_setpoint", ratio(single->setpoint.IAE, figures.setpoint.IAE)}};
+        // What is lost elsewhere must not exceed what is gained.
+        const double lost = std::min({1.0, gains.at("gain_outer").value_or(1), gains.at("gain_setpoint").value_or(1)});
+        if (gain) out.push_back({*gain * lost >= kWorthwhile ? cascade_pays : cascade_gains_little, gains});
     }
     if (figures.speed_ratio && *figures.speed_ratio < kMinSpeedRatio)
         out.push_back({inner_too_slow, {{"speed_ratio", *figures.speed_ratio}, {"at_least", kMinSpeedRatio}}});

@@ -184,18 +184,19 @@ void add_loop_commands(CommandTree& tree) {
     ScoreCommand& scoring = tree.keep<ScoreCommand>();
     CLI::App& score_app =
         tree.add("score", "A tuning rule against problems with proved bounds", [&] { return score(scoring); });
-    score_app.add_option("file", scoring.file,
-                         "The request of POST /v1/score as JSON, or a CSV of settings (problem,Kp,Ti,Td)");
-    for (const auto& [name, word, help] :
-         {std::tuple{"--Kp", &scoring.words.Kp, "Formula of Kp, such as T/(2*K*L)"},
-          {"--Ti", &scoring.words.Ti, "Formula of Ti"},
-          {"--Td", &scoring.words.Td, "Formula of Td"},
-          {"--method", &scoring.words.method, "A method in place of formulas, such as simc"},
-          {"--structure", &scoring.words.structure, "pi, pid_tied or pid_fixed"},
-          {"--Ms", &scoring.words.Ms, "Only problems with this limit"},
-          {"--problems", &scoring.words.problems, "Only problems whose names begin so, such as amigo/"},
-          {"--name", &scoring.words.name, "A name for the answer"}})
-        score_app.add_option(name, *word, help)->type_name("WORD");
+    CLI::Option* file = score_app.add_option(
+        "file", scoring.file, "The request of POST /v1/score as JSON, or a CSV of settings (problem,Kp,Ti,Td)");
+    for (const auto& [name, word, help, is_rule] :
+         {std::tuple{"--Kp", &scoring.words.Kp, "Formula of Kp, such as T/(2*K*L)", true},
+          {"--Ti", &scoring.words.Ti, "Formula of Ti", true},
+          {"--Td", &scoring.words.Td, "Formula of Td", true},
+          {"--method", &scoring.words.method, "A method in place of formulas, such as simc", true},
+          {"--structure", &scoring.words.structure, "pi, pid_tied or pid_fixed", false},
+          {"--Ms", &scoring.words.Ms, "Only problems with this limit", false},
+          {"--problems", &scoring.words.problems, "Only problems whose names begin so, such as amigo/", false},
+          {"--name", &scoring.words.name, "A name for the answer", false}})
+        if (CLI::Option* option = score_app.add_option(name, *word, help)->type_name("WORD"); is_rule)
+            option->excludes(file);
     add_output_options(score_app, scoring.output, true);
 
     PlantCommand& typing = tree.keep<PlantCommand>();

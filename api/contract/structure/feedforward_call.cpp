@@ -178,8 +178,8 @@ const Description<FeedforwardRequest>& feedforward_request_contract() {
             .field("disturbance", &R::disturbance, linear_plant(), "From the measured disturbance to y.")
             .field("record", &R::record, maybe(object(record_contract())),
                    "In place of both: a record in which u and the disturbance, d, move.")
-            .field("feedback", &R::feedback, feedback_codec(), "The loop's controller, or {\"tune\": {...}}.",
-                   {.required = true})
+            .field("feedback", &R::feedback, feedback_codec(),
+                   "The loop's controller, or tune with the limits of a design.", {.required = true})
             .field("feedforward", &R::feedforward, object(feedforward_wish_contract()), "Limits of the compensator.")
             .field("controller", &R::controller, maybe(object(compensator_contract())),
                    "A compensator to judge, in place of designs.")

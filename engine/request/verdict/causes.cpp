@@ -19,6 +19,16 @@ double filter_degrees(const Filter& filter, double omega) {
     return 0;
 }
 
+std::string kind_of(const Certificate& proof) {
+    const char* sign = proof.root.low[0] < 0 ? "" : " of positive gains";
+    switch (proof.problem.structure) {
+        case CertifiedStructure::pi: return std::string("PI") + sign;
+        case CertifiedStructure::pid_fixed: return std::string("PID with this filter") + sign;
+        case CertifiedStructure::pid_tied: return std::string("PID with Tf = Td/10") + sign;
+    }
+    return "PID";
+}
+
 }  // namespace
 
 OptionalFinding PI_or_PID(const VerdictInput& c) {
@@ -55,11 +65,10 @@ OptionalFinding proved(const VerdictInput& c) {
     const auto* report = c.entry.report_as<CertificateReport>();
     if (report == nullptr) return {};
     const Certificate& proof = report->certificate;
-    const std::string kind = proof.problem.structure == CertifiedStructure::pi ? "PI" : "PID";
     FindingBuilder draft(proof.complete ? "proved" : "proved-so-far", Level::note);
     draft.say(proof.complete ? "Within " : "So far proved to be within ")
         .say(figure_text(100 * std::max(0.0, proof.gap)))
-        .say(" % of the best possible " + kind + " within these limits")
+        .say(" % of the best " + kind_of(proof) + " within these limits and the certificate's box of gains")
         .say(proof.complete ? " (proved)." : ".");
     return draft.figure("gap", proof.gap).figure("lower", proof.lower);
 }

@@ -141,6 +141,8 @@ Expected<DesignResult> search_everywhere(SearchKind kind, const TuningProblem& t
 
 namespace {
 
+Warning not_certified(std::string why) { return {"not-certified", std::move(why)}; }
+
 /// Why there is no certificate; "" if there can be one.
 std::string why_not(const DesignProblem& problem, const RobustOptions& options) {
     if (problem.measured != nullptr) return "The plant is known by points of its frequency response alone.";
@@ -157,7 +159,7 @@ std::string why_not(const DesignProblem& problem, const RobustOptions& options) 
 static void add_certificate(const DesignProblem& problem, const RobustOptions& options, double upper,
                             const RunControl& control, TunedController& result) {
     if (!options.certify.gap || result.partial) return;
-    const auto refuse = [&](std::string why) { result.warnings.push_back({"not-certified", std::move(why)}); };
+    const auto refuse = [&](std::string why) { result.warnings.push_back(not_certified(std::move(why))); };
     if (std::string why = why_not(problem, options); !why.empty()) return refuse(std::move(why));
     const auto design = to_ideal(result.controller);
     if (!design) return refuse(design.error().message);
@@ -233,6 +235,7 @@ Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const Robus
                                    "A frequency response has no response over time: Kp/Ti is maximised instead of the "
                                    "requested objective."});
     add_warnings(result, problem, found->x);
+    if (options.certify.gap) result.warnings.push_back(not_certified(why_not(problem, options)));
     return result;
 }
 
@@ -410,6 +413,7 @@ Expected<DeviceDesign> tune_robust_for_device(const TuningProblem& tuning, const
     ideal.objective = Objective::load_iae;
     ideal.search = SearchKind::fast;
     ideal.surface = false;
+    ideal.certify = {};
     auto start = tune_robust(*start_problem, ideal, control);
     if (!start) return start.error();
     auto others = other_members(tuning, first_sign);
@@ -442,6 +446,10 @@ Expected<DeviceDesign> tune_robust_for_device(const TuningProblem& tuning, const
         design.tuned.warnings.push_back({"objective-replaced",
                                          "A design for an implemented controller minimises the load IAE with the "
                                          "circles of Ms and Mt, instead of the requested objective."});
+    if (options.certify.gap)
+        design.tuned.warnings.push_back(robust::not_certified(
+            "A certificate is about the ideal law, and these settings are designed on the product's own. Leave out "
+            "implement."));
     return design;
 }
 

@@ -12,7 +12,7 @@ using testing::HasSubstr;
 
 constexpr const char* kFigures[] = {"J_r", "J_d", "J_rd", "J_r_opt", "J_d_opt", "I_perf", "Deg", "Ms"};
 
-std::vector<FieldError> faults_of(const std::string& tune) {
+std::vector<FieldError> tradeoff_faults(const std::string& tune) {
     const auto prepared = prepare_job(request_with(R"("tune": [)" + tune + "]"));
     const auto* problem = std::get_if<Problem>(&prepared);
     return problem ? problem->errors : std::vector<FieldError>{};
@@ -37,7 +37,7 @@ Json evaluated(const std::string& request) {
 TEST(NumberOrWord, BothAreTakenAndFitTheDocument) {
     for (const char* Ms : {R"("free")", "1.4", "1.55", "2"}) {
         const std::string method = std::string(R"({"method": "arrieta_ms", "Ms": )") + Ms + "}";
-        EXPECT_TRUE(faults_of(method).empty()) << Ms;
+        EXPECT_TRUE(tradeoff_faults(method).empty()) << Ms;
         EXPECT_EQ(schema_faults(Json::parse(method), "Method"), std::vector<std::string>{});
         const Json result = tuned(request_with(R"("tune": [)" + method + R"(], "evaluate": {"points": 0})"));
         EXPECT_EQ(result["controllers"][0]["options"]["Ms"], Json::parse(Ms));
@@ -56,25 +56,26 @@ TEST(NumberOrWord, OtherValuesAreRefusedInWordsAndByTheDocument) {
                                     {"null", "it must be a number or the word free"},
                                     {R"("1.6")", "Write 1.6 without quotes"}}) {
         const std::string method = std::string(R"({"method": "arrieta_ms", "Ms": )") + Ms + "}";
-        EXPECT_THAT(detail_at(faults_of(method), "/tune/0/Ms"), HasSubstr(words)) << Ms;
+        EXPECT_THAT(detail_at(tradeoff_faults(method), "/tune/0/Ms"), HasSubstr(words)) << Ms;
         EXPECT_FALSE(schema_faults(Json::parse(method), "Method").empty()) << Ms;
     }
 }
 
 TEST(NumberOrWord, TheOptionsOfADegradationAreChecked) {
     EXPECT_THAT(
-        detail_at(faults_of(R"({"method": "arrieta_degradation", "degradation": -0.1})"), "/tune/0/degradation"),
+        detail_at(tradeoff_faults(R"({"method": "arrieta_degradation", "degradation": -0.1})"), "/tune/0/degradation"),
         HasSubstr("it must be >= 0"));
-    EXPECT_THAT(detail_at(faults_of(R"({"method": "arrieta_degradation", "exact": "yes"})"), "/tune/0/exact"),
+    EXPECT_THAT(detail_at(tradeoff_faults(R"({"method": "arrieta_degradation", "exact": "yes"})"), "/tune/0/exact"),
                 HasSubstr("true or false"));
-    EXPECT_THAT(detail_at(faults_of(R"({"method": "arrieta_degradation", "degredation": 0.3})"), "/tune/0/degredation"),
-                HasSubstr("did you mean degradation?"));
+    EXPECT_THAT(
+        detail_at(tradeoff_faults(R"({"method": "arrieta_degradation", "degredation": 0.3})"), "/tune/0/degredation"),
+        HasSubstr("did you mean degradation?"));
 }
 
 TEST(NumberOrWord, OfAllTheWordAndAnyMethodsNumberAreTaken) {
-    EXPECT_TRUE(faults_of(R"({"method": "all", "Ms": "free"})").empty());
-    EXPECT_TRUE(faults_of(R"({"method": "all", "Ms": 1.2})").empty());
-    EXPECT_FALSE(faults_of(R"({"method": "all", "Ms": "fast"})").empty());
+    EXPECT_TRUE(tradeoff_faults(R"({"method": "all", "Ms": "free"})").empty());
+    EXPECT_TRUE(tradeoff_faults(R"({"method": "all", "Ms": 1.2})").empty());
+    EXPECT_FALSE(tradeoff_faults(R"({"method": "all", "Ms": "fast"})").empty());
 }
 
 TEST(TradeoffAnswer, TheExampleHasItWithItsCurves) {

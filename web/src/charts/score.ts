@@ -2,8 +2,8 @@
 import type { ScoreAnswer } from "../api/score.ts";
 import type { Frame, Look, Mark, Trace } from "../plot/frame.ts";
 import { formatNumber } from "../words/numbers.ts";
-import { STATUS_WORDS } from "../words/score.ts";
-import type { Status } from "../words/score.ts";
+import { STATUS_WORDS } from "../rules/words.ts";
+import type { Status } from "../rules/words.ts";
 
 /** A rule in the profile. `look`: null for one among many. */
 export interface ProfiledRule {

@@ -8,8 +8,8 @@ import type { FieldSpec } from "../form/fields.ts";
 import { tabs } from "../form/tabs.ts";
 import { optionField } from "../views/cards/methods_card.ts";
 import { documentAddress } from "../words/documents.ts";
-import { STRUCTURE_WORDS } from "../words/score.ts";
-import type { Library } from "../words/score.ts";
+import { STRUCTURE_WORDS } from "./words.ts";
+import type { Library } from "./words.ts";
 import { FORMULAS, kindOf, KINDS, OPTION } from "./question.ts";
 import type { RuleKind, RuleTexts } from "./question.ts";
 

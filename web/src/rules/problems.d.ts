@@ -1,5 +1,5 @@
 declare module "virtual:problems" {
-  import type { Library } from "../words/score.ts";
+  import type { Library } from "./words.ts";
   const library: Library;
   export default library;
 }

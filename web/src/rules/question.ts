@@ -5,7 +5,7 @@ import { place } from "../form/cases.ts";
 import { readField } from "../form/fields.ts";
 import type { FieldSpec } from "../form/fields.ts";
 import { parseNumber } from "../form/number.ts";
-import type { KnownProblem } from "../words/score.ts";
+import type { KnownProblem } from "./words.ts";
 
 /** By the names of the fields; options of a method begin with `OPTION`. */
 export type RuleTexts = Record<string, string>;

@@ -1,8 +1,8 @@
 // The score problem by problem: sorted, filtered by result; a problem opens its design.
 import { h } from "../dom.ts";
 import { DASH, formatNumber, formatSetting } from "../words/numbers.ts";
-import { SCORE_COLUMNS, scoreCells, sortScores, STATUS_WORDS } from "../words/score.ts";
-import type { ScoreOrder, ScoreRow, Status } from "../words/score.ts";
+import { SCORE_COLUMNS, scoreCells, sortScores, STATUS_WORDS } from "./words.ts";
+import type { ScoreOrder, ScoreRow, Status } from "./words.ts";
 import { csvText, download } from "../plot/export.ts";
 
 export interface ScoreTable {

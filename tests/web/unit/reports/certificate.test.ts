@@ -4,7 +4,7 @@ import { designBody } from "../../../../web/src/api/live.ts";
 import type { Certificate, Entry } from "../../../../web/src/api/types.ts";
 import { withCertificate } from "../../../../web/src/form/tuning_request.ts";
 import { costOfRow, questionOf } from "../../../../web/src/live/shown.ts";
-import { certificateFacts, provedWords } from "../../../../web/src/words/certificate.ts";
+import { certificateFacts, provedWords } from "../../../../web/src/proof/words.ts";
 
 const certificate: Certificate = {
   upper: 1.5208784,

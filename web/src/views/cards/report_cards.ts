@@ -2,8 +2,8 @@
 // no such report.
 import type { Controller, Entry, Plant, TuningRequest } from "../../api/types.ts";
 import type { UnitNames } from "../../words/numbers.ts";
-import { certificateCard } from "./certificate_card.ts";
-import type { StoredEntry } from "./certificate_card.ts";
+import { certificateCard } from "../../proof/certificate_card.ts";
+import type { StoredEntry } from "../../proof/certificate_card.ts";
 import { emulationCard } from "./emulation_card.ts";
 import { rimcCard } from "./rimc_card.ts";
 import { tradeoffCard } from "./tradeoff_card.ts";

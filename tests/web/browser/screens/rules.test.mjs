@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { accessibilityViolations, browserTests, dropFile, overflow, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, dropFile, overflow, WINDOWS } from "../../harness.mjs";
 
 const { withPage, post, jobOf } = browserTests();
 

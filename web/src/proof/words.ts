@@ -1,6 +1,6 @@
 // A certificate in words: what is proved, and about which controllers.
 import type { Certificate } from "../api/types.ts";
-import { formatNumber, withUnit } from "./numbers.ts";
+import { formatNumber, withUnit } from "../words/numbers.ts";
 
 const KINDS: Record<Certificate["problem"]["structure"], string> = { pi: "PI", pid_tied: "PID with Tf = Td/10", pid_fixed: "PID with this filter" };
 
@@ -13,7 +13,7 @@ export function provedWords({ complete, lower, gap, asked_gap, problem }: Certif
 }
 
 const percent = (share: number): string => String(Number((100 * share).toPrecision(2)));
-const capital = (sentence: string): string => sentence[0]!.toUpperCase() + sentence.slice(1);
+const capital = (text: string): string => text[0]!.toUpperCase() + text.slice(1);
 
 /** Label and text of each figure. */
 export function certificateFacts({ upper, lower, root, boxes, seconds }: Certificate, unit: string): [label: string, text: string][] {

@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { accessibilityViolations, browserTests, dropFile, overflow, tracesShown, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, dropFile, overflow, tracesShown, WINDOWS } from "../../harness.mjs";
 
-import { stepTest } from "../step_record.mjs";
+import { stepTest } from "../../step_record.mjs";
 
 const tests = browserTests();
 const { withPage, post } = tests;

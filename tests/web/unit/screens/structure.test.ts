@@ -1,16 +1,16 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { STRUCTURES } from "../../../web/src/api/structure.ts";
-import type { AnswerOf, StructureRequest } from "../../../web/src/api/structure.ts";
-import { levelChoices, structureResponses, structureSensitivities } from "../../../web/src/charts/structure.ts";
-import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
-import { layoutDiagram } from "../../../web/src/structure/diagram.ts";
-import type { Box } from "../../../web/src/structure/diagram.ts";
-import { linkedTexts, objectPlants, parseSettings, readQuestion, settingsLine, textsOf, textsOfLink } from "../../../web/src/structure/question.ts";
-import { fieldsOf, firstExample, STRUCTURE_SPECS } from "../../../web/src/structure/structures.ts";
-import { unitNames } from "../../../web/src/words/numbers.ts";
-import { conclusionWords, nameOfInput, polynomial, settingLines, settingsOfAnswer } from "../../../web/src/words/structure.ts";
-import { structureTables } from "../../../web/src/structure/figures.ts";
+import { STRUCTURES } from "../../../../web/src/api/structure.ts";
+import type { AnswerOf, StructureRequest } from "../../../../web/src/api/structure.ts";
+import { levelChoices, structureResponses, structureSensitivities } from "../../../../web/src/charts/structure.ts";
+import { formatRoute, parseRoute } from "../../../../web/src/routes.ts";
+import { layoutDiagram } from "../../../../web/src/structure/diagram.ts";
+import type { Box } from "../../../../web/src/structure/diagram.ts";
+import { linkedTexts, objectPlants, parseSettings, readQuestion, settingsLine, textsOf, textsOfLink } from "../../../../web/src/structure/question.ts";
+import { fieldsOf, firstExample, STRUCTURE_SPECS } from "../../../../web/src/structure/structures.ts";
+import { unitNames } from "../../../../web/src/words/numbers.ts";
+import { conclusionWords, nameOfInput, polynomial, settingLines, settingsOfAnswer } from "../../../../web/src/words/structure.ts";
+import { structureTables } from "../../../../web/src/structure/figures.ts";
 
 const units = unitNames({ time: "s", u: "%", y: "degC" });
 const pid = { form: "ideal", Kp: 0.9348808, Ti: 18.1077739, Td: 4.3558718, b: 1, c: 0, filter: { type: "measurement_second_order", Tf: 0.43558718 } };

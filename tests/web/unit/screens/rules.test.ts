@@ -1,18 +1,18 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { ProblemScore, ScoreAnswer, ScoreRequest } from "../../../web/src/api/score.ts";
-import type { Method } from "../../../web/src/api/types.ts";
-import { profileFrame, profileSteps, ratioFrame } from "../../../web/src/charts/score.ts";
-import { fieldsOf } from "../../../web/src/form/fields.ts";
-import { frameToCsv, frameToRows, frameToSvg } from "../../../web/src/plot/export.ts";
-import { wholeView } from "../../../web/src/plot/layout.ts";
-import { readings } from "../../../web/src/plot/readout.ts";
-import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
-import { comparedRules, otherRules } from "../../../web/src/rules/others.ts";
-import { byScore, hasSettings } from "../../../web/src/rules/others_card.ts";
-import { atLines, designRequest, FIRST_RULE, linkedTexts, readRule, readSettings } from "../../../web/src/rules/question.ts";
-import { commonFault, commonStructure, headline, scoreCells, scoreFacts, scoreRows, sortScores } from "../../../web/src/words/score.ts";
-import type { Library } from "../../../web/src/words/score.ts";
+import type { ProblemScore, ScoreAnswer, ScoreRequest } from "../../../../web/src/api/score.ts";
+import type { Method } from "../../../../web/src/api/types.ts";
+import { profileFrame, profileSteps, ratioFrame } from "../../../../web/src/charts/score.ts";
+import { fieldsOf } from "../../../../web/src/form/fields.ts";
+import { frameToCsv, frameToRows, frameToSvg } from "../../../../web/src/plot/export.ts";
+import { wholeView } from "../../../../web/src/plot/layout.ts";
+import { readings } from "../../../../web/src/plot/readout.ts";
+import { formatRoute, parseRoute } from "../../../../web/src/routes.ts";
+import { comparedRules, otherRules } from "../../../../web/src/rules/others.ts";
+import { byScore, hasSettings } from "../../../../web/src/rules/others_card.ts";
+import { atLines, designRequest, FIRST_RULE, linkedTexts, readRule, readSettings } from "../../../../web/src/rules/question.ts";
+import { commonFault, commonStructure, headline, scoreCells, scoreFacts, scoreRows, sortScores } from "../../../../web/src/rules/words.ts";
+import type { Library } from "../../../../web/src/rules/words.ts";
 
 const problem = (name: string, status: ProblemScore["status"], tau: number, ratio?: number, more: Partial<ProblemScore> = {}): ProblemScore =>
   ({ name, status, tau, ...(ratio === undefined ? {} : { ratio, IAE: 2 * ratio, Ms: 1.3, Mt: 1.1 }), ...more }) as ProblemScore;

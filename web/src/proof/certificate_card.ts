@@ -1,16 +1,16 @@
 // How much better any other controller could be, as far as it is proved; and the request for a proof.
-import { getText, sentenceOf } from "../../api/client.ts";
-import type { Entry } from "../../api/types.ts";
-import { h, uniqueId } from "../../dom.ts";
-import { textField } from "../../form/controls.ts";
-import { FormErrors } from "../../form/errors.ts";
-import { parseNumber } from "../../form/number.ts";
-import { download } from "../../plot/export.ts";
-import { certificateFacts, provedWords } from "../../words/certificate.ts";
-import { documentAddress } from "../../words/documents.ts";
-import { figureUnit } from "../../words/figure_units.ts";
-import { withMinus } from "../../words/numbers.ts";
-import type { UnitNames } from "../../words/numbers.ts";
+import { getText, sentenceOf } from "../api/client.ts";
+import type { Entry } from "../api/types.ts";
+import { h, uniqueId } from "../dom.ts";
+import { textField } from "../form/controls.ts";
+import { FormErrors } from "../form/errors.ts";
+import { parseNumber } from "../form/number.ts";
+import { download } from "../plot/export.ts";
+import { certificateFacts, provedWords } from "./words.ts";
+import { documentAddress } from "../words/documents.ts";
+import { figureUnit } from "../words/figure_units.ts";
+import { withMinus } from "../words/numbers.ts";
+import type { UnitNames } from "../words/numbers.ts";
 
 /** The place of an entry in a stored job. */
 export interface StoredEntry {

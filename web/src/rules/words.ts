@@ -1,6 +1,6 @@
 // The score of a rule as text: counts, the table problem by problem, and its CSV.
 import type { ProblemScore, ScoreAnswer } from "../api/score.ts";
-import { DASH, formatNumber } from "./numbers.ts";
+import { DASH, formatNumber } from "../words/numbers.ts";
 
 /** A problem as the library has it. */
 export interface KnownProblem {

@@ -19,7 +19,7 @@ export const OPTION = "option.";
 export const kindOf = ({ kind }: RuleTexts): RuleKind => KINDS.find((one) => one === kind) ?? "formula";
 
 /** A rule to begin with, and its problems. */
-export const FIRST_RULE: RuleTexts = { kind: "formula", Kp: "0.3/(Kv*L)", Ti: "min(T + L/3, 8*L)", structure: "pi", Ms: "1.4" };
+export const FIRST_RULE: RuleTexts = { kind: "formula", Kp: "0.3/(Kv*L)", Ti: "min(T + L/3, 8*L)", structure: "pi", Ms: "1.6" };
 
 const FILTERS = ["family", "structure", "Ms"];
 const OF_KIND: Record<RuleKind, (name: string) => boolean> = {

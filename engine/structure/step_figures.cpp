@@ -10,7 +10,7 @@
 namespace tunewright::structure {
 namespace {
 
-constexpr double kQuickTolerance = 3e-5, kQuickSettled = 1e-4;
+constexpr double kQuickTolerance = 3e-6, kQuickSettled = 3e-5;
 
 std::vector<double> quick_IAEs_of(const BlockDiagram& diagram, int enters_at, const std::vector<int>& outputs,
                                   double target) {

@@ -227,10 +227,10 @@ test("three loops: the matrix has a plant for each pair, and the pairing is a ch
     assert.match(await page.locator(".structure-tables").innerText(), /Niederlinski index/);
     const crossed = answered(page, "interaction", ({ pairing }) => pairing?.[0] === 2);
     await field(page, "Pairing").selectOption("2 1");
-    // No design keeps the limit with that pairing: the service says so at the limit.
+    // Integral action cannot hold that pairing: the service says so at the pairing.
     assert.equal((await crossed).status(), 422);
-    await page.locator('.structure-controls input[aria-invalid="true"]').waitFor();
-    assert.equal(await field(page, "Peak mu of all loops").getAttribute("aria-invalid"), "true");
+    await page.locator('select[aria-invalid="true"]').waitFor();
+    assert.equal(await field(page, "Pairing").getAttribute("aria-invalid"), "true");
     await field(page, "Loops").selectOption("3");
     assert.equal(await page.locator(".block.matrix input[type=text]").count(), 9);
     assert.equal(await field(page, "y1 from u1").inputValue(), "12.8 e^(-s)/(16.7s+1)");

@@ -100,8 +100,16 @@ std::string verify_json(const VerifyAnswer& answer) {
 }
 
 Answer verify_call(std::string_view body, const RunControl& control) {
-    const auto verified = verify_result({body}, control);
-    if (const auto* problem = std::get_if<Problem>(&verified)) return refusal(*problem);
+    auto verified = verify_result({body}, control);
+    if (auto* problem = std::get_if<Problem>(&verified)) {
+        // What is no result is a wrong body here, not a missing resource.
+        if (problem->status == 404) {
+            problem->status = 422;
+            problem->type = "invalid-request";
+            problem->title = "The request is not valid";
+        }
+        return refusal(*problem);
+    }
     return {200, verify_json(std::get<VerifyAnswer>(verified))};
 }
 

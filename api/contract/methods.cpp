@@ -19,7 +19,8 @@ std::vector<std::string> method_ids() {
 std::vector<std::string> names_of_all() {
     std::vector<std::string> names;
     for (const TuningMethod& method : method_registry())
-        for (const OptionDescription& option : method.options) names.push_back(option.name);
+        if (method.compared)
+            for (const OptionDescription& option : method.options) names.push_back(option.name);
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
@@ -30,6 +31,7 @@ std::vector<std::string> names_of_all() {
 const OptionDescription* taking(const std::string& name, const Json& value, const Reader& reader,
                                 const OptionDescription*& named) {
     for (const TuningMethod& method : method_registry()) {
+        if (!method.compared) continue;
         for (const OptionDescription& option : method.options) {
             if (option.name != name) continue;
             if (named == nullptr) named = &option;
@@ -95,6 +97,7 @@ Json methods_schema(SchemaBook& book) {
     for (const TuningMethod& method : method_registry()) {
         const Json options = options_schema(method.options)["properties"];
         for (const auto& [name, option] : options.items()) {
+            if (!method.compared) break;
             Json any = option;
             for (const char* of_one_form : {"default", "x-main", "x-draws", "x-slider", "x-in-place-of"})
                 any.erase(of_one_form);

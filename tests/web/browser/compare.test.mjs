@@ -43,8 +43,9 @@ test("every method of the service is a row, ranked as the service ranks, with th
     const { request, result } = await jobOf(page);
     assert.deepEqual(request.tune, [{ method: "all" }]);
     const { methods } = await (await fetch(`${tests.service.base}/v1/methods`)).json();
-    // On a linear plant the emulation of a nonlinear controller is not requested, and a frontier is not a rule.
-    for (const { id } of methods.filter((method) => !["all", "emulation", "frontier"].includes(method.id)))
+    // On a linear plant the emulation of a nonlinear controller is not requested; a frontier is not a rule, and a formula
+    // is the user's.
+    for (const { id } of methods.filter((method) => !["all", "emulation", "frontier", "formula"].includes(method.id)))
       assert.ok(
         result.controllers.some((entry) => entry.method === id),
         `${id} has no row`,

@@ -2083,12 +2083,12 @@ export type components = {
       IAE_load: (number | null)[][];
       IAE_setpoint: (number | null)[][];
       cost: number | null;
+      decoupling?: components["schemas"]["Decoupling"];
       manual: {
         may_open: boolean[];
         unstable_in_automatic: number[][];
       };
       F_blt: number | null;
-      decoupling?: components["schemas"]["Decoupling"];
       compared: components["schemas"]["ComparedControllers"][];
       partial?: boolean;
       verdict: components["schemas"]["Conclusion"][];

@@ -174,13 +174,13 @@ TEST(Verify, AnotherPlantInTheRequestIsFound) {
 TEST(Verify, WhatCannotBeReadIsRefused) {
     const VerifiedJob job = job_of(Json::parse(request_with(R"("tune": [{"method": "simc"}])")));
     EXPECT_EQ(verify_call("{", {}).status, 400);
-    EXPECT_EQ(verify_call("{}", {}).status, 404);
+    EXPECT_EQ(verify_call("{}", {}).status, 422);
     EXPECT_EQ(verify_call(job.result.dump(), {}).status, 422) << "the request is missing";
     EXPECT_EQ(verify_call(Json{{"request", {{"plant", 1}}}, {"result", job.result}}.dump(), {}).status, 422);
     for (const char* member : {"robustness", "performance", "controller", "verification"}) {
         VerifiedJob broken = job;
         broken.result["controllers"][0][member] = "text";
-        EXPECT_LE(verify_call(broken.body(), {}).status, 404) << member;
+        EXPECT_LE(verify_call(broken.body(), {}).status, 422) << member;
     }
 }
 

@@ -45,7 +45,8 @@ export function fieldsOf(
       {
         ...spec,
         path: here,
-        label: here.join(" "),
+        // A formula's field is not mistaken for that of its value.
+        label: property.type === "string" && !property.enum ? `${here.join(" ")} =` : here.join(" "),
         hint: sentences(property),
         unit: own,
         defaultText:

@@ -1,6 +1,7 @@
 #include "api/services/score_service.h"
 
 #include <algorithm>
+#include <deque>
 #include <map>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "api/certificate/problem_library.h"
 #include "api/contract/score/score_call.h"
 #include "api/csv/cell.h"
+#include "api/csv/table.h"
 #include "api/describe/body.h"
 #include "engine/score/rule_settings.h"
 #include "engine/tuning/registry.h"
@@ -68,19 +70,14 @@ Json number_or_text(std::string_view text) {
 Json settings_of(std::string_view csv) {
     Json settings = Json::array();
     std::vector<std::string_view> names, cells;
+    std::deque<std::string> storage;
     while (!csv.empty()) {
         const std::size_t end = std::min(csv.find('\n'), csv.size());
         const std::string_view line = trimmed(csv.substr(0, end));
         csv.remove_prefix(std::min(end + 1, csv.size()));
         if (line.empty()) continue;
         auto& into = names.empty() ? names : cells;
-        into.clear();
-        for (std::string_view rest = line;;) {
-            const std::size_t comma = std::min(rest.find(','), rest.size());
-            into.push_back(trimmed(rest.substr(0, comma)));
-            if (comma == rest.size()) break;
-            rest.remove_prefix(comma + 1);
-        }
+        split_line(line, ',', into, storage);
         if (cells.empty()) continue;
         Json one = Json::object();
         for (std::size_t i = 0; i < std::min(names.size(), cells.size()); ++i)

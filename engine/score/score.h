@@ -39,7 +39,7 @@ struct ProblemScore {
     Status status = Status::no_settings;
     double tau = 0;                  ///< L/(L + T) of the plant's first-order reduction; 0 with an integrator
     IdealPid controller;             ///< with the problem's filter
-    double Ms = 0, Mt = 0, IAE = 0;  ///< of a stable loop; Ms and Mt of the problem are in it
+    double Ms = 0, Mt = 0, IAE = 0;  ///< of a stable loop
     double ratio = 0;                ///< of `kept`
     std::string why;
 };
@@ -50,7 +50,7 @@ struct ProfilePoint {
     double ratio = 1, share = 0;
 };
 
-/// The longest run of problems, by ascending tau, of which none breaks a limit, is unstable or lacks settings.
+/// The longest run of problems in ascending order of tau on which the rule has settings that keep all limits.
 struct Range {
     double tau_low = 0, tau_high = 0;
     int problems = 0;

@@ -104,7 +104,7 @@ Conclusions conclusions_on(const CascadeFigures& figures, const CascadeDesign& l
         const std::map<std::string, Figure> gains{{"gain_inner", ratio(single->inner_load.IAE, figures.inner_load.IAE)},
                                                   {"gain_outer", ratio(single->outer_load.IAE, figures.outer_load.IAE)},
                                                   {"gain_setpoint", ratio(single->setpoint.IAE, figures.setpoint.IAE)}};
-        // What is lost elsewhere must not exceed what is gained.
+        // The gain for inner loads must outweigh a loss after outer loads or set points.
         const double lost = std::min({1.0, gains.at("gain_outer").value_or(1), gains.at("gain_setpoint").value_or(1)});
         if (gain) out.push_back({*gain * lost >= kWorthwhile ? cascade_pays : cascade_gains_little, gains});
     }

@@ -13,8 +13,8 @@ struct StepResponse;
 
 namespace tunewright::structure {
 
-/// Of a unit step that enters at one signal; TV of what the controller adds at another. The integrals are infinite, and
-/// so no figures, where y comes to rest away from its target, as without integral action.
+/// Figures of y after a unit step at one signal; TV: of the controller's part of another. Where y comes to rest away
+/// from its target, as without integral action, the integrals are infinite and thus not known.
 struct StepFigures {
     Figure IAE = 0.0, ISE = 0.0;
     Figure IE = 0.0;  ///< integral of the error

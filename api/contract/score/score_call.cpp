@@ -113,12 +113,11 @@ Callable<void(const ScoreAnswer&, Writer&)> of_score(M score::Score::*member, co
     return [member, write = codec.write](const ScoreAnswer& a, Writer& out) { write(a.score.*member, out); };
 }
 
-void check_score(const Json& value, ScoreRequest& request, Reader& reader) {
+void check_score(const Json&, ScoreRequest& request, Reader& reader) {
     if (request.tune.has_value() == !request.settings.empty())
         reader.fault_at("tune", "Give either tune, a method such as formula, or settings, the settings of problems.");
     if (request.tune && request.tune->of_all())
         reader.fault_at("tune", "A score is about one method; name it, such as simc.");
-    (void)value;
 }
 
 }  // namespace

@@ -102,7 +102,7 @@ std::string verify_json(const VerifyAnswer& answer) {
 Answer verify_call(std::string_view body, const RunControl& control) {
     auto verified = verify_result({body}, control);
     if (auto* problem = std::get_if<Problem>(&verified)) {
-        // What is no result is a wrong body here, not a missing resource.
+        // A body that is not a result is a wrong request; no resource is missing.
         if (problem->status == 404) {
             problem->status = 422;
             problem->type = "invalid-request";

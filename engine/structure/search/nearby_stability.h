@@ -1,4 +1,4 @@
-// Whether loops are stable, known from settings nearby.
+// Stability of loops, known from settings nearby.
 //
 // f: the characteristic function with fixed poles, such as 1 + C P. Where |f - f0| < |f0| on the whole imaginary axis,
 // f and f0 have equally many zeros in the right half-plane (Rouché): if f0 belongs to stable loops, so does f. A grid

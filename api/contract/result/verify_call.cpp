@@ -14,7 +14,7 @@ Codec<Json> any_object() {
             reader.fault(reader.name() + " is " + kind_of(value) + "; it must be an object.");
     };
     codec.write = [](const Json& value, Writer& out) { out.raw(value.dump()); };
-    codec.schema = [](SchemaBook&) { return Json{{"type", "object"}}; };
+    codec.schema = [](SchemaBook&) { return Json{{"type", "object"}, {"additionalProperties", true}}; };
     return codec;
 }
 

@@ -44,7 +44,8 @@ export function certificateCard(prove: (gap: number) => Promise<void>): Certific
   const save = h("button", { type: "button", onclick: () => void saveFile() }, "Certificate file");
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const about = h("p", { class: "hint" }, "A proof searches all controllers of a box by intervals; it may take a minute. ", h("a", { href: documentAddress("proof", "what-is-proved-and-what-is-not"), target: "_blank" }, "What is proved, and what is not"));
-  const element = h("section", { class: "card certificate", "aria-labelledby": title.id, hidden: true }, title, sentence, facts, form, h("div", { class: "actions" }, save), trouble, about);
+  const fold = h("details", {}, h("summary", {}, title), sentence, facts, form, h("div", { class: "actions" }, save), trouble, about);
+  const element = h("section", { class: "card certificate", "aria-labelledby": title.id, hidden: true }, fold);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     void begin();
@@ -98,6 +99,7 @@ export function certificateCard(prove: (gap: number) => Promise<void>): Certific
       sentence.hidden = sentence.textContent === "";
       facts.hidden = !certificate;
       facts.replaceChildren(...(certificate ? certificateFacts(certificate, unit).flatMap(([label, text]) => [h("dt", {}, label), h("dd", {}, withMinus(text))]) : []));
+      if (certificate) fold.open = true;
       form.hidden = !place || refused !== undefined || certificate?.complete === true;
       save.hidden = !place || !certificate;
       complain("");

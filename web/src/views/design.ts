@@ -27,7 +27,7 @@ import { operatingCard } from "./cards/operating_card.ts";
 import { ownStepCard } from "./cards/own_step_card.ts";
 import { progressCard } from "./cards/progress_card.ts";
 import { replayCard } from "./cards/replay_card.ts";
-import { reportCards } from "./cards/report_cards.ts";
+import { reportCards, type ReportCard } from "./cards/report_cards.ts";
 import { titleCard } from "./cards/title_card.ts";
 import { isOfUltimate, showUltimate } from "./cards/ultimate_card.ts";
 import { showFailure, showVerdict } from "./cards/verdict_card.ts";
@@ -109,7 +109,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     onReading: (reading) => modified.waitFor(reading),
   });
   const reports = reportCards(announce, { onRetune: retune, onProve: prove, onTry: own.follow });
-  const reportsAt = (place: "above" | "below") => reports.filter((card) => card.place === place).map((card) => card.element);
+  const reportsAt = (place: ReportCard["place"]) => reports.filter((card) => card.place === place).map((card) => card.element);
   const legend = createLegend(store);
   const plots = plotGrid(announce);
   const replay = replayCard(plots);
@@ -151,7 +151,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     h("div", { class: "more-cards" }, ...reportsAt("below"), ...own.below, computed),
   );
   const followsLater = h("p", { class: "hint", hidden: true }, "The figures below follow when you release the slider.");
-  const below = h("div", { class: "below" }, followsLater, ownStep.element, replay.element, model, ...reportsAt("above"), notes, more);
+  const below = h("div", { class: "below" }, followsLater, replay.element, model, ...reportsAt("above"), notes, h("div", { class: "folds" }, ownStep.element, ...reportsAt("folded"), more));
   const left = h("div", { class: "left-column" }, modified.controls, modified.front);
   const element = h("main", { class: "design", id: "main" }, title.element, head, left);
   const bodyParts = [main, aside, below];

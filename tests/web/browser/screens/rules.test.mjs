@@ -145,6 +145,7 @@ test("an optimum is proved on Design: bound and gap are those of the job, and th
     await page.getByRole("button", { name: "Tune this model" }).click();
     await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
     const card = page.getByRole("region", { name: "How much better could another be?" });
+    await card.getByText("How much better could another be?").click();
     await card.getByLabel(/^Prove it to within/).fill("5");
     await card.getByRole("button", { name: "Prove it" }).click();
     await card.getByText(/^No P.*\(proved\)\.$/).waitFor();

@@ -23,7 +23,7 @@ export interface ReportedEntry {
 export interface ReportCard {
   element: HTMLElement;
   /** Above or below the plots. */
-  place: "above" | "below";
+  place: "above" | "folded" | "below";
   show(shown: ReportedEntry): void;
   dispose(): void;
 }
@@ -41,7 +41,7 @@ export interface ReportEvents {
 const CARDS: ((announce: Announce, events: ReportEvents) => ReportCard)[] = [
   (_announce, events) => {
     const card = certificateCard(events.onProve);
-    return { ...card, place: "above", show: ({ entry, stored, units }) => card.show(entry, stored, units) };
+    return { ...card, place: "folded", show: ({ entry, stored, units }) => card.show(entry, stored, units) };
   },
   (announce, events) => {
     const card = rimcCard(announce, events.onRetune);

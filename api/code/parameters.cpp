@@ -50,17 +50,9 @@ Json simulated_rules(const CodeWords& words, const Json& request) {
     return out;
 }
 
-/// Texts that are numbers become numbers; a text that the contract refuses stays as typed, so that its error can quote
-/// it. `defaults`: for what the words do not name.
+/// `defaults`: for what the words do not name.
 void read_words(const CodeWords& words, const Json& defaults, CodeQuestion& question, Reader& reader) {
-    Json given = Json::object();
-    for (const auto& [name, word] : words) {
-        std::string name_storage, word_storage;
-        const std::string key(utf8_text(name, name_storage)), value(utf8_text(word, word_storage));
-        if (given.contains(key)) reader.fault_at(key, key + " is given twice. Leave one out.");
-        Json number = Json::parse(value, nullptr, false);
-        given[key] = number.is_number() ? std::move(number) : Json(value);
-    }
+    Json given = json_of(words, reader);
     for (const auto& [name, value] : defaults.items())
         if (!given.contains(name)) given[name] = value;
     code_contract().read(given, question, reader);
@@ -98,6 +90,18 @@ double number_at(const Json& value, const char* place) {
 }
 
 }  // namespace
+
+Json json_of(const CodeWords& words, Reader& reader) {
+    Json given = Json::object();
+    for (const auto& [name, word] : words) {
+        std::string name_storage, word_storage;
+        const std::string key(utf8_text(name, name_storage)), value(utf8_text(word, word_storage));
+        if (given.contains(key)) reader.fault_at(key, key + " is given twice. Leave one out.");
+        Json number = Json::parse(value, nullptr, false);
+        given[key] = number.is_number() ? std::move(number) : Json(value);
+    }
+    return given;
+}
 
 AskedCode read_asked(const CodeWords& words, const ChosenEntry& found, Reader& reader) {
     AskedCode asked;

@@ -16,6 +16,10 @@
 
 namespace tunewright::api {
 
+/// An object of the words: texts that are numbers become numbers; a text that the contract refuses stays as typed, so
+/// that its error can quote it. A word that is given twice is a fault.
+Json json_of(const CodeWords& words, Reader& reader);
+
 /// The parameters as typed, what they leave out from the request (of a structure from `sampled`, else the rules of
 /// `implement`), and the units of the result: all read before anything is computed.
 struct AskedCode {

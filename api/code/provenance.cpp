@@ -118,6 +118,7 @@ ControllerCode file_of(const code::Program& program, code::Language language, st
         case code::Language::structured_text: return {"text/plain", code::type_name(program) + ".st", std::move(text)};
         case code::Language::c: return {"text/x-c", "tunewright_" + program.name + ".h", std::move(text)};
         case code::Language::python: return {"text/x-python", "tunewright_" + program.name + ".py", std::move(text)};
+        case code::Language::arduino: return {"text/x-arduino", "tunewright_" + program.name + ".ino", std::move(text)};
     }
     return {};
 }

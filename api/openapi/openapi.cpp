@@ -6,6 +6,7 @@
 #include "api/contract/check/check_request.h"
 #include "api/contract/check/check_result.h"
 #include "api/contract/controller_record.h"
+#include "api/contract/device/experiment_question.h"
 #include "api/contract/plant/typed.h"
 #include "api/contract/preview.h"
 #include "api/contract/product/conversion.h"
@@ -129,6 +130,7 @@ std::string openapi_json() {
         preview_request_contract().schema(book);
         preview_answer_contract().schema(book);
         relay_request_contract().schema(book);
+        experiment_contract().schema(book);
         relay_answer_contract().schema(book);
         product_summary_contract().schema(book);
         product_contract().schema(book);

@@ -11,7 +11,7 @@ namespace {
 class C : public Dialect {
 public:
     explicit C(const Program& program)
-        : Dialect({" != ", " && ", " || ", "!"}),
+        : Dialect({" == ", " != ", " && ", " || ", "!"}),
           record_(program.name),
           kept_outputs_(of_role(program, VariableRole::output).size() > 1) {}
 
@@ -114,12 +114,53 @@ std::string open_guard(const Program& program, const std::string& functions) {
            program.name + "_init.\"\n#endif\n#define " + any + "H\n\n";
 }
 
-std::string c_argument(const Declaration& input) {
-    if (!input.optional) return input.name;
-    return input.type != Type::boolean ? "0.0" : input.initial != 0 ? "true" : "false";
+/// The sentences of a coded output.
+void add_sentences(const Program& program, std::string& out) {
+    if (program.codes.empty()) return;
+    out += "\n/* The sentence of a value of " + program.coded_output + ". */\nstatic inline const char *tunewright_" +
+           program.name + "_" + program.coded_output + "(int value)\n{\n    switch (value) {\n";
+    for (const auto& [value, sentence] : program.codes)
+        out += "    case " + std::to_string(value) + ": return \"" + sentence + "\";\n";
+    out += "    default: return \"\";\n    }\n}\n";
+}
+
+void add_row(const Program& program, std::string& out) {
+    if (program.row.empty()) return;
+    const std::string type = "tunewright_" + program.name;
+    std::string format, values;
+    for (const auto& [state, heading] : program.row) {
+        format += (format.empty() ? "" : ",") + std::string("%.10g");
+        values += ", " + program.name + "->" + state;
+    }
+    out += "\n/* A row of the record, \"" + row_headings(program) +
+           "\", with its line end; the answer is that of snprintf. */\n" + "static inline int " + type + "_row(const " +
+           type + " *" + program.name + ", char *text, size_t size)\n{\n    return snprintf(text, size, \"" + format +
+           "\\n\"" + values + ");\n}\n";
 }
 
 }  // namespace
+
+std::string c_argument(const Declaration& input) {
+    if (!input.optional) return input.name;
+    return input.type != Type::boolean ? real_literal(input.initial, 'e') : input.initial != 0 ? "true" : "false";
+}
+
+std::string c_functions(const Program& program, bool rows) {
+    std::string out;
+    add_struct(program, out);
+    add_init(program, out);
+    add_step(program, out);
+    add_sentences(program, out);
+    if (rows) add_row(program, out);
+    return out;
+}
+
+std::string c_head(const Program& program, const Provenance& provenance, const std::vector<std::string>& call) {
+    std::string head = "/*\n";
+    for (const std::string& line : head_lines(program, provenance, call))
+        head += line.empty() ? " *\n" : " * " + line + "\n";
+    return head + " */\n";
+}
 
 std::string print_c(const Program& program, const Provenance& provenance) {
     const std::string type = "tunewright_" + program.name;
@@ -133,17 +174,11 @@ std::string print_c(const Program& program, const Provenance& provenance) {
                                         std::string("Settings ") + (keeps_outputs ? "and outputs " : "") +
                                             "are fields of the struct: " + program.name + "." +
                                             example_setting(program) + " = 2.0;"};
-    std::string head = "/*\n";
-    for (const std::string& line : head_lines(program, provenance, call))
-        head += line.empty() ? " *\n" : " * " + line + "\n";
-    std::string functions;
-    add_struct(program, functions);
-    add_init(program, functions);
-    std::string step;
-    add_step(program, step);
-    functions += step;
-    const char* math = uses_exponential(step) ? "#include <math.h>\n" : "";
-    return head + " */\n" + open_guard(program, functions) + math + "#include <stdbool.h>\n\n" + functions +
+    const std::string functions = c_functions(program, true);
+    std::string includes = uses_exponential(functions) ? "#include <math.h>\n" : "";
+    includes += "#include <stdbool.h>\n";
+    if (!program.row.empty()) includes += "#include <stdio.h>\n";
+    return c_head(program, provenance, call) + open_guard(program, functions) + includes + "\n" + functions +
            "\n#endif\n";
 }
 

@@ -49,9 +49,12 @@ std::string state_name(const std::string& system, std::size_t i) { return system
 
 }  // namespace
 
-Composer::Composer(std::string name, std::string title, double Ts) {
+Composer::Composer(std::string name, std::string title) {
     program_.name = std::move(name);
     program_.title = std::move(title);
+}
+
+Composer::Composer(std::string name, std::string title, double Ts) : Composer(std::move(name), std::move(title)) {
     setting("Ts", Ts, "sample time in s: the time from call to call");
     setting("at_rest", 0, "true: in the first call everything is at rest at the operating point", Type::boolean);
     setting("restart", 0, "true: this call starts again as the first one", Type::boolean);

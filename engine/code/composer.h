@@ -23,15 +23,20 @@ struct DiscreteSystem {
 class Composer {
 public:
     Composer() = default;
+    Composer(std::string name, std::string title);
     /// With the settings `Ts`, `at_rest` and `restart`, which all embedded programs share.
     Composer(std::string name, std::string title, double Ts);
 
     /// A variable that has been declared.
     Expr operator[](const std::string& name) const;
-    Expr input(const std::string& name, const char* comment) { return declare(VariableRole::input, name, comment); }
+    Expr input(const std::string& name, const char* comment, Type type = Type::real) {
+        return declare(VariableRole::input, name, comment, type);
+    }
     /// An input that a call may leave out; it is then `otherwise`.
     Expr optional_input(const std::string& name, const char* comment, Type type, double otherwise = 0);
-    Expr output(const std::string& name, const char* comment) { return declare(VariableRole::output, name, comment); }
+    Expr output(const std::string& name, const char* comment, Type type = Type::real) {
+        return declare(VariableRole::output, name, comment, type);
+    }
     Expr setting(const std::string& name, double value, const char* comment, Type type = Type::real);
     Expr state(const std::string& name, const char* comment, Type type = Type::real, int length = 0) {
         return declare(VariableRole::state, name, comment, type, length);
@@ -43,6 +48,7 @@ public:
     Expr let(const std::string& name, const char* comment, const Expr& value);
 
     void add(Statement statement) { program_.body.push_back(std::move(statement)); }
+    void add(Block block) { program_.body += std::move(block); }
     void add_bounded(const Expr& x, const Expr& value, const Expr& low, const Expr& high);
     /// In the first call, and after a restart, before everything else.
     void begin_with(Statement statement) { begin_.push_back(std::move(statement)); }

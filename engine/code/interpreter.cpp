@@ -50,6 +50,7 @@ Interpreter::Value Interpreter::value_of(const Expr& expression) {
         case Operation::less: return [=] { return a() < b() ? 1.0 : 0.0; };
         case Operation::greater: return [=] { return a() > b() ? 1.0 : 0.0; };
         case Operation::greater_equal: return [=] { return a() >= b() ? 1.0 : 0.0; };
+        case Operation::equal: return [=] { return a() == b() ? 1.0 : 0.0; };
         case Operation::not_equal: return [=] { return a() != b() ? 1.0 : 0.0; };
         case Operation::logical_and: return [=] { return a() != 0 && b() != 0 ? 1.0 : 0.0; };
         case Operation::logical_or: return [=] { return a() != 0 || b() != 0 ? 1.0 : 0.0; };

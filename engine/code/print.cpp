@@ -20,6 +20,7 @@ int binding(Operation operation) {
         case Operation::less:
         case Operation::greater:
         case Operation::greater_equal:
+        case Operation::equal:
         case Operation::not_equal: return 1;
         case Operation::add:
         case Operation::subtract: return 2;
@@ -116,6 +117,7 @@ std::string Dialect::mark(Operation operation) const {
         case Operation::less: return " < ";
         case Operation::greater: return " > ";
         case Operation::greater_equal: return " >= ";
+        case Operation::equal: return words_.equal;
         case Operation::not_equal: return words_.not_equal;
         case Operation::logical_and: return words_.logical_and;
         case Operation::logical_or: return words_.logical_or;
@@ -181,6 +183,12 @@ std::string output_names(const Program& program) {
     return out;
 }
 
+std::string row_headings(const Program& program) {
+    std::string out;
+    for (const auto& [state, heading] : program.row) out += (out.empty() ? "" : ",") + heading;
+    return out;
+}
+
 std::string example_arguments(const Program& program, const std::function<std::string(const Declaration&)>& argument) {
     std::string out;
     for (const Declaration& input : of_role(program, VariableRole::input))
@@ -193,6 +201,7 @@ std::string print(const Program& program, Language language, const Provenance& p
         case Language::structured_text: return print_structured_text(program, provenance);
         case Language::c: return print_c(program, provenance);
         case Language::python: return print_python(program, provenance);
+        case Language::arduino: return print_arduino(program, provenance);
     }
     return {};
 }
@@ -277,6 +286,12 @@ std::vector<std::string> head_lines(const Program& program, const Provenance& pr
     for (const std::string& note : program.notes) {
         lines.emplace_back();
         wrap(safe(note), 0, lines);  // the note of a schedule has the user's words for its variable and unit
+    }
+    if (!program.codes.empty()) {
+        lines.emplace_back();
+        lines.push_back("Values of " + program.coded_output + ":");
+        for (const auto& [value, sentence] : program.codes)
+            wrap("  " + std::to_string(value) + " " + sentence, 5, lines);
     }
     lines.emplace_back();
     lines.insert(lines.end(), call.begin(), call.end());

@@ -1,4 +1,4 @@
-// Writes a controller's program as source text: IEC 61131-3 Structured Text, C11 or Python 3.
+// Writes a controller's program as source text: IEC 61131-3 Structured Text, C11, Python 3 or a sketch for an Arduino.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace tunewright::code {
 
-enum class Language { structured_text, c, python };
+enum class Language { structured_text, c, python, arduino };
 
 /// The origin of the controller for the head comment, a line each: {"Ms", "1.4"}. Any text is safe: characters that a
 /// comment cannot contain are replaced.
@@ -27,7 +27,7 @@ class Dialect {
 public:
     /// The words that languages have in different ways, with their blanks.
     struct Words {
-        const char *not_equal, *logical_and, *logical_or, *logical_not;
+        const char *equal, *not_equal, *logical_and, *logical_or, *logical_not;
     };
     explicit Dialect(const Words& words) : words_(words) {}
     virtual ~Dialect() = default;
@@ -84,5 +84,17 @@ std::string example_arguments(const Program& program, const std::function<std::s
 std::string print_structured_text(const Program& program, const Provenance& provenance);
 std::string print_c(const Program& program, const Provenance& provenance);
 std::string print_python(const Program& program, const Provenance& provenance);
+std::string print_arduino(const Program& program, const Provenance& provenance);
+
+/// The type and the functions in C, which C++11 compiles too, without the head and the guard. `rows`: with the function
+/// that formats a row of the record, which needs a library with snprintf for numbers.
+std::string c_functions(const Program& program, bool rows);
+/// `call`: how to call it, for the head.
+std::string c_head(const Program& program, const Provenance& provenance, const std::vector<std::string>& call);
+/// An input of the example call: its name, or for one that may be left out its initial value.
+std::string c_argument(const Declaration& input);
+
+/// The headings of a row of the record: "t,u,y".
+std::string row_headings(const Program& program);
 
 }  // namespace tunewright::code

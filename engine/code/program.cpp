@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <stdexcept>
 
 namespace tunewright::code {
@@ -64,6 +65,7 @@ Expr operator-(const Expr& a) {
 Expr operator<(const Expr& a, const Expr& b) { return comparison(Operation::less, a, b); }
 Expr operator>(const Expr& a, const Expr& b) { return comparison(Operation::greater, a, b); }
 Expr operator>=(const Expr& a, const Expr& b) { return comparison(Operation::greater_equal, a, b); }
+Expr operator==(const Expr& a, const Expr& b) { return comparison(Operation::equal, a, b); }
 Expr operator!=(const Expr& a, const Expr& b) { return comparison(Operation::not_equal, a, b); }
 Expr both(const Expr& a, const Expr& b) { return logical(Operation::logical_and, a, b); }
 Expr either(const Expr& a, const Expr& b) { return logical(Operation::logical_or, a, b); }
@@ -95,6 +97,11 @@ Statement repeat(const Expr& index, int count, Block body) {
 }
 
 Statement remark(std::string text) { return {Remark{std::move(text)}}; }
+
+Block& operator+=(Block& block, Block more) {
+    block.insert(block.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+    return block;
+}
 
 void keep_within(Block& block, const Expr& x, const Expr& low, const Expr& high) {
     block.push_back(when(x > high, {assign(x, high)}));

@@ -11,6 +11,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -45,6 +46,7 @@ enum class Operation {
     less,
     greater,
     greater_equal,
+    equal,
     not_equal,
     logical_and,
     logical_or,
@@ -102,6 +104,7 @@ Expr operator-(const Expr& a);
 Expr operator<(const Expr& a, const Expr& b);
 Expr operator>(const Expr& a, const Expr& b);
 Expr operator>=(const Expr& a, const Expr& b);
+Expr operator==(const Expr& a, const Expr& b);
 Expr operator!=(const Expr& a, const Expr& b);
 Expr both(const Expr& a, const Expr& b);
 Expr either(const Expr& a, const Expr& b);
@@ -110,6 +113,9 @@ Expr exponential(const Expr& a);
 
 struct Statement;
 using Block = std::vector<Statement>;
+
+/// Appends statements.
+Block& operator+=(Block& block, Block more);
 
 struct Assignment {
     Expr target, value;
@@ -149,6 +155,10 @@ struct Program {
     std::vector<std::string> notes;        ///< paragraphs for the reader: what it computes and how
     std::vector<Declaration> variables;
     Block body;
+    /// Sentences of an integer output, by its values; and states that are a row of a record, each with its heading.
+    std::string coded_output = {};
+    std::vector<std::pair<int, std::string>> codes = {};
+    std::vector<std::pair<std::string, std::string>> row = {};
 
     /// The variable as an expression. Throws std::logic_error for a name that is already used, that of the program
     /// included; case does not count.

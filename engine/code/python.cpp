@@ -1,3 +1,5 @@
+#include <cctype>
+
 #include "engine/code/print.h"
 
 namespace tunewright::code {
@@ -5,7 +7,7 @@ namespace {
 
 class Python : public Dialect {
 public:
-    Python() : Dialect({" != ", " and ", " or ", "not "}) {}
+    Python() : Dialect({" == ", " != ", " and ", " or ", "not "}) {}
 
     std::string real(double value) const override { return real_literal(value, 'e'); }
     std::string boolean(bool value) const override { return value ? "True" : "False"; }
@@ -50,6 +52,28 @@ std::string arguments(const Program& program) {
     return out;
 }
 
+/// The sentences of a coded output.
+std::string sentences(const Program& program) {
+    if (program.codes.empty()) return {};
+    std::string out;
+    for (const char c : program.coded_output) out += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    out += "S = {\n";
+    for (const auto& [value, sentence] : program.codes)
+        out += "    " + std::to_string(value) + ": \"" + sentence + "\",\n";
+    return out + "}\n\n\n";
+}
+
+std::string row_method(const Program& program) {
+    if (program.row.empty()) return {};
+    std::string format, values;
+    for (const auto& [state, heading] : program.row) {
+        format += (format.empty() ? "" : ",") + std::string("%.10g");
+        values += (values.empty() ? "self." : ", self.") + state;
+    }
+    return "\n    def row(self):\n        \"\"\"A row of the record, " + row_headings(program) +
+           ", without a line end.\"\"\"\n        return \"" + format + "\" % (" + values + ")\n";
+}
+
 }  // namespace
 
 std::string print_python(const Program& program, const Provenance& provenance) {
@@ -64,6 +88,7 @@ std::string print_python(const Program& program, const Provenance& provenance) {
         out += line.empty() ? "#\n" : "# " + line + "\n";
     const std::string body = text_of(program.body, Python(), 2);
     out += body.find("math.") == body.npos ? "\n\n" : "\nimport math\n\n\n";
+    out += sentences(program);
     out += "class " + type_name(program) + ":\n    \"\"\"A sampled " + program.title +
            ".\"\"\"\n\n    def __init__(self):\n";
     for (const Declaration& variable : of_role(program, VariableRole::parameter)) out += attribute(variable);
@@ -71,7 +96,7 @@ std::string print_python(const Program& program, const Provenance& provenance) {
     for (const Declaration& variable : of_role(program, VariableRole::state)) out += attribute(variable);
     out += "\n    def step(" + arguments(program) + "):\n        \"\"\"One call every Ts seconds; the answer is " +
            output_names(program) + ".\"\"\"\n";
-    return out + body + "        return " + output_names(program) + "\n";
+    return out + body + "        return " + output_names(program) + "\n" + row_method(program);
 }
 
 }  // namespace tunewright::code

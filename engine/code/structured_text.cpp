@@ -8,7 +8,7 @@ namespace {
 
 class StructuredText : public Dialect {
 public:
-    StructuredText() : Dialect({" <> ", " AND ", " OR ", "NOT "}) {}
+    StructuredText() : Dialect({" = ", " <> ", " AND ", " OR ", "NOT "}) {}
 
     std::string real(double value) const override { return real_literal(value, 'E'); }
     std::string boolean(bool value) const override { return value ? "TRUE" : "FALSE"; }

@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "api/certificate/certificate_call.h"
+#include "api/code/experiment_code.h"
 #include "api/examples/examples.h"
 #include "api/registries.h"
 #include "api/report/report.h"
@@ -182,6 +183,15 @@ int plant(const PlantCommand& command) {
 
 int code(const CodeCommand& command) {
     std::string result, request;
+    if (command.experiment) {
+        const auto written = api::experiment_code(command.words);
+        if (const auto* problem = std::get_if<api::Problem>(&written)) return write_problem(*problem, {});
+        return write_text(std::get<api::ControllerCode>(written).text);
+    }
+    if (command.result.file.empty()) {
+        std::cerr << "code: give a file with a result, or --experiment relay or bump.\n";
+        return 2;
+    }
     if (const auto refused = read_texts(command.result, result, request)) return *refused;
     const auto written = api::controller_code({result, request}, command.result.controller, command.words);
     if (const auto* problem = std::get_if<api::Problem>(&written))

@@ -72,7 +72,8 @@ struct ResultWords {
 
 struct CodeCommand {
     ResultWords result;
-    api::CodeWords words;  ///< parameters of GET /v1/jobs/{id}/controllers/{index}/code
+    api::CodeWords words;     ///< parameters of GET /v1/jobs/{id}/controllers/{index}/code
+    bool experiment = false;  ///< the words are members of the request of POST /v1/experiments/code; there is no result
 };
 int code(const CodeCommand& command);
 

@@ -103,7 +103,7 @@ void code_word(CLI::App& app, const std::string& name, api::CodeWords& words, co
 }
 
 void add_code_words(CLI::App& app, api::CodeWords& words) {
-    code_word(app, "language", words, "st, c or python");
+    code_word(app, "language", words, "st, c, python or arduino");
     code_word(app, "sample-time", words, "Time from one call to the next, in the result's unit of time");
     code_word(app, "integral", words, "backward, forward or trapezoidal");
     code_word(app, "derivative", words,
@@ -122,6 +122,30 @@ void add_code_words(CLI::App& app, api::CodeWords& words) {
     code_word(app, "r2-bias", words, "Cascade: it at the operating point");
     code_word(app, "d0", words, "Feedforward: the disturbance at the operating point");
     code_word(app, "compensator", words, "Feedforward: static, inverse, guzman_hagglund, optimum or given");
+}
+
+void add_experiment_words(CLI::App& app, CodeCommand& command) {
+    app.add_option_function<std::string>(
+           "--experiment",
+           [&command](const std::string& word) {
+               command.experiment = true;
+               command.words.emplace_back("experiment", word);
+           },
+           "relay or bump: the program of a test that a controller runs by itself; without a result, times in seconds")
+        ->type_name("WORD");
+    code_word(app, "u-step", command.words, "Test: size of the moves of u");
+    code_word(app, "asymmetry", command.words,
+              "Relay test: levels u0 + u_step (1 + asymmetry), u0 - u_step (1 - asymmetry)");
+    code_word(app, "action", command.words, "Relay test: reverse, direct or find");
+    code_word(app, "cycles", command.words, "Relay test: exactly so many cycles");
+    code_word(app, "y-move", command.words, "Bump: the step ends when y has moved so far");
+    code_word(app, "hysteresis", command.words, "Test: least distance of y from its level at which u moves");
+    code_word(app, "y-min", command.words, "Test: y below it stops the test");
+    code_word(app, "y-max", command.words, "Test: y above it stops the test");
+    code_word(app, "u-safe", command.words, "Test: u after a fault");
+    code_word(app, "quiet-time", command.words, "Test: time in which u is held and the noise measured");
+    code_word(app, "max-time", command.words, "Test: its longest time");
+    code_word(app, "frozen-time", command.words, "Test: y unchanged for longer is a fault");
 }
 
 void add_request_command(CommandTree& tree, const std::string& name, const std::string& structure,
@@ -209,9 +233,12 @@ void add_loop_commands(CommandTree& tree) {
 
     CodeCommand& coding = tree.keep<CodeCommand>();
     CLI::App& code_app =
-        tree.add("code", "A controller of a result as Structured Text, C or Python", [&] { return code(coding); });
+        tree.add("code", "A controller of a result, or a test, as Structured Text, C, Python or a sketch",
+                 [&] { return code(coding); });
     add_result_options(code_app, coding.result, "File of the request, for the head comment and its sample time");
+    code_app.get_option("file")->required(false);
     add_code_words(code_app, coding.words);
+    add_experiment_words(code_app, coding);
 
     VerifyCommand& verifying = tree.keep<VerifyCommand>();
     CLI::App& verify_app = tree.add("verify", "Every figure of a result computed again by a second, independent way",

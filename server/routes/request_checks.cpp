@@ -57,9 +57,13 @@ std::optional<http::Response> refuse_form(const http::Request& request) {
     return http::problem_response(406, "The answer is application/json, which the Accept field does not allow.");
 }
 
+std::optional<http::Response> refuse_body(const http::Request& request) {
+    if (http::sends_json(request)) return std::nullopt;
+    return http::problem_response(415, "The body must be JSON, with Content-Type: application/json.");
+}
+
 std::optional<http::Response> refuse_call(const http::Request& request) {
-    if (!http::sends_json(request))
-        return http::problem_response(415, "The body must be JSON, with Content-Type: application/json.");
+    if (auto refusal = refuse_body(request)) return refusal;
     return refuse_form(request);
 }
 

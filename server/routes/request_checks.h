@@ -11,6 +11,9 @@
 
 namespace tunewright::server {
 
+/// 415 if the body is not JSON.
+std::optional<http::Response> refuse_body(const http::Request& request);
+
 /// The refusal of a call that changes or computes something: 415 if the body is not JSON, 406 if the client does not
 /// accept JSON. Empty if the call is acceptable.
 std::optional<http::Response> refuse_call(const http::Request& request);

@@ -98,12 +98,17 @@ void add_rules(Description<Asked>& d) {
 
 }  // namespace
 
+Codec<code::Language> code_language() {
+    return choice<Language>({{"st", Language::structured_text},
+                             {"c", Language::c},
+                             {"python", Language::python},
+                             {"arduino", Language::arduino}});
+}
+
 const Description<CodeQuestion>& code_contract() {
     static const auto description = [] {
         Description<CodeQuestion> d("CodeQuestion", "Options of a controller's code.");
-        d.field("language", &CodeQuestion::language,
-                choice<Language>({{"st", Language::structured_text}, {"c", Language::c}, {"python", Language::python}}),
-                "st, c or python.", {.required = true});
+        d.field("language", &CodeQuestion::language, code_language(), "st, c, python or arduino.", {.required = true});
         add_rules(d);
         d.check(check_question);
         return d;

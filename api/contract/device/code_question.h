@@ -28,6 +28,7 @@ struct CodeQuestion {
     std::optional<std::string> compensator;
 };
 
+Codec<code::Language> code_language();
 /// Read from an object of the parameters as typed, with numbers as numbers.
 const Description<CodeQuestion>& code_contract();
 

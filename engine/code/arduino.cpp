@@ -94,7 +94,8 @@ bool is_given(const std::string& input) { return input.starts_with("setpoint") |
 /// A function for each signal, with an example of its hardware: measurements at the analogue pins, in percent.
 std::string signals(const Program& program) {
     std::string out =
-        "\n/* ---- Your hardware: replace what these functions do; units are those of the settings. -------------- */\n";
+        "\n/* ---- Your hardware: replace what these functions do; units are those of the settings. -------------- "
+        "*/\n";
     int pin = 0;
     for (const std::string& input : read_inputs(program)) {
         const std::string value =
@@ -151,12 +152,12 @@ std::string print_arduino(const Program& program, const Provenance& provenance) 
     return c_head(program, provenance, call) + "#include <math.h>\n#include <stdbool.h>\n\n" + functions +
            signals(program) +
            filled(experiment ? kExperimentLoop : kLoop, {{"@TYPE@", type},
-                                                            {"@NAME@", program.name},
-                                                            {"@CALL@", step},
-                                                            {"@HEADINGS@", row_headings(program)},
-                                                            {"@ROW@", row_statements(program)},
-                                                            {"@READ@", read_statements(program)},
-                                                            {"@WRITE@", write_statements(program)}});
+                                                         {"@NAME@", program.name},
+                                                         {"@CALL@", step},
+                                                         {"@HEADINGS@", row_headings(program)},
+                                                         {"@ROW@", row_statements(program)},
+                                                         {"@READ@", read_statements(program)},
+                                                         {"@WRITE@", write_statements(program)}});
 }
 
 }  // namespace tunewright::code

@@ -15,18 +15,22 @@ void add_sizes(Description<Q>& d) {
     d.field("u_step", &Q::u_step, number({.not_zero = true}),
             "Size of the moves of u: of a relay test to either side and above 0, of a bump with its sign.",
             {.required = true, .unit = "u"})
-        .field("asymmetry", &Q::asymmetry, number({.minimum = -code::kLargestAsymmetry, .maximum = code::kLargestAsymmetry}),
-               "Relay: the levels are u0 + u_step (1 + asymmetry) and u0 - u_step (1 - asymmetry); unequal ones show the "
-               "static gain too.")
+        .field(
+            "asymmetry", &Q::asymmetry,
+            number({.minimum = -code::kLargestAsymmetry, .maximum = code::kLargestAsymmetry}),
+            "Relay: the levels are u0 + u_step (1 + asymmetry) and u0 - u_step (1 - asymmetry); unequal ones show the "
+            "static gain too.")
         .field("cycles", &Q::cycles, integer(0, code::kMostCycles),
                "Relay: exactly so many; 0: until the cycle is steady.")
         .field("action", &Q::action,
                choice<Action>({{"find", Action::find}, {"reverse", Action::reverse}, {"direct", Action::direct}}),
-               "Relay: how the loop's controller acts. reverse: u falls when y rises; find: from the first move, not for a "
+               "Relay: how the loop's controller acts. reverse: u falls when y rises; find: from the first move, not "
+               "for a "
                "plant that is unstable or first moves the wrong way.")
-        .field("y_move", &Q::y_move, number(kNotNegative),
-               "Bump: ends the step when y has moved so far, needed for a plant that integrates; 0: when y has settled.",
-               {.unit = "y"})
+        .field(
+            "y_move", &Q::y_move, number(kNotNegative),
+            "Bump: ends the step when y has moved so far, needed for a plant that integrates; 0: when y has settled.",
+            {.unit = "y"})
         .field("hysteresis", &Q::hysteresis, number(kNotNegative),
                "Least distance of y from its level at which u moves; the noise may demand more.", {.unit = "y"});
 }
@@ -36,7 +40,8 @@ void add_limits(Description<Q>& d) {
         .field("u_max", &Q::u_max, maybe(number()), "Largest u.", {.unit = "u"})
         .field("y_min", &Q::y_min, maybe(number()), "y below it stops the test.", {.unit = "y"})
         .field("y_max", &Q::y_max, maybe(number()), "y above it stops the test.", {.unit = "y"})
-        .field("u_safe", &Q::u_safe, maybe(number()), "u after a fault; without it u as before the test.", {.unit = "u"})
+        .field("u_safe", &Q::u_safe, maybe(number()), "u after a fault; without it u as before the test.",
+               {.unit = "u"})
         .field("rate_limit", &Q::rate_limit, number(kNotNegative),
                "Largest change of u per second, faults excepted; 0: no limit.", {.unit = "u/s"})
         .field("quiet_time", &Q::quiet_time, number(kNotNegative),

@@ -50,11 +50,11 @@ Block BumpTest::move() {
     block += take_size(size_, deviation_);
     block.push_back(when(size_ > 2 * hysteresis_, {assign(moved_, truth(true))}));
     const Expr far = both(y_move_ > 0, size_ >= y_move_);
-    block.push_back(when(is(ExperimentMode::first_move),
-                         {when(far, go_back(),
-                               {when(elapsed_ > max_time_ / 2,
-                                     {when(moved_, go_back(), fault(ExperimentReason::no_response))})})},
-                         {when(elapsed_ > up_time_, end(ExperimentReason::settled))}));
+    block.push_back(
+        when(is(ExperimentMode::first_move),
+             {when(far, go_back(),
+                   {when(elapsed_ > max_time_ / 2, {when(moved_, go_back(), fault(ExperimentReason::no_response))})})},
+             {when(elapsed_ > up_time_, end(ExperimentReason::settled))}));
     block.push_back(when(both(is(ExperimentMode::first_move), elapsed_ >= window_end_), window()));
     return block;
 }
@@ -75,8 +75,8 @@ Block BumpTest::window() {
 // Each of two means of at least ten values has a third of the noise.
 Block BumpTest::compare() {
     Block block = take_size(size_, mean_now_);
-    block.push_back(when(mean_change_ > kSteady * size_ + noise_ / 2, {assign(steady_, 0.0)},
-                         {assign(steady_, steady_ + 1)}));
+    block.push_back(
+        when(mean_change_ > kSteady * size_ + noise_ / 2, {assign(steady_, 0.0)}, {assign(steady_, steady_ + 1)}));
     return block;
 }
 
@@ -86,7 +86,8 @@ Block BumpTest::go_back() {
 
 std::vector<std::string> BumpTest::notes() {
     return with_common_notes(
-        {"Step test: u moves by u_step, within u_min and u_max, until y has settled, and back for as long. y has settled "
+        {"Step test: u moves by u_step, within u_min and u_max, until y has settled, and back for as long. y has "
+         "settled "
          "when two means in a row, each over the last fifth of the time since the step, differ by less than 2 % of the "
          "whole change and no more than the noise explains. y_move ends the step earlier: needed for a plant that "
          "integrates; a plant that is unstable needs the relay test."});

@@ -30,17 +30,21 @@ std::optional<Error> range_fault(const char* low_name, const std::optional<doubl
         if (value && !(std::abs(*value) < kNoLimit))
             return invalid(name, std::string(name) + " is " + text(*value) + "; it must be a number within 1e30.");
     if (low && high && !(*low < *high))
-        return invalid(high_name, std::string(high_name) + " is " + text(*high) + " and " + low_name + " " + text(*low) +
-                                      "; " + high_name + " must be > " + low_name + ".");
+        return invalid(high_name, std::string(high_name) + " is " + text(*high) + " and " + low_name + " " +
+                                      text(*low) + "; " + high_name + " must be > " + low_name + ".");
     return std::nullopt;
 }
 
 std::optional<Error> fault_of(Experiment kind, const ExperimentOptions& o) {
     const bool relay = kind == Experiment::relay;
-    for (const Size& size : {Size{"sample_time", o.Ts, false}, {"u_step", relay ? o.u_step : std::abs(o.u_step), false},
-                             {"rate_limit", o.rate_limit, true}, {"quiet_time", o.quiet_time, true},
-                             {"max_time", o.max_time, true}, {"hysteresis", o.hysteresis, true},
-                             {"frozen_time", o.frozen_time, true}, {"y_move", o.y_move, true}})
+    for (const Size& size : {Size{"sample_time", o.Ts, false},
+                             {"u_step", relay ? o.u_step : std::abs(o.u_step), false},
+                             {"rate_limit", o.rate_limit, true},
+                             {"quiet_time", o.quiet_time, true},
+                             {"max_time", o.max_time, true},
+                             {"hysteresis", o.hysteresis, true},
+                             {"frozen_time", o.frozen_time, true},
+                             {"y_move", o.y_move, true}})
         if (auto fault = size_fault(size)) return fault;
     if (!(std::abs(o.asymmetry) <= kLargestAsymmetry))
         return invalid("asymmetry", "asymmetry is " + text(o.asymmetry) + "; it must be -0.8 to 0.8.");
@@ -49,7 +53,9 @@ std::optional<Error> fault_of(Experiment kind, const ExperimentOptions& o) {
                                      std::to_string(kMostCycles) + ".");
     if (auto fault = range_fault("u_min", o.u_min, "u_max", o.u_max)) return fault;
     if (auto fault = range_fault("y_min", o.y_min, "y_max", o.y_max)) return fault;
-    return range_fault("u_safe", o.u_safe, "u_max", std::nullopt);
+    if (o.u_safe && !(*o.u_safe >= o.u_min.value_or(-kNoLimit) && *o.u_safe <= o.u_max.value_or(kNoLimit)))
+        return invalid("u_safe", "u_safe is " + text(*o.u_safe) + "; it must be a number from u_min to u_max.");
+    return std::nullopt;
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ std::vector<std::pair<int, std::string>> sentences() {
         {Reason::y_high, "y rose above y_max: take a smaller u_step, or a higher limit"},
         {Reason::u_refused, "the actuator reads back another u: is it in automatic, and within its range?"},
         {Reason::clock, "the clock jumped, or a call came too late: call every Ts seconds"},
-        {Reason::restarted, "start was true in the first call, as after a loss of power: set start to false, then to true"},
+        {Reason::restarted,
+         "start was true in the first call, as after a loss of power: set start to false, then to true"},
         {Reason::no_response, "y did not answer in time: take a larger u_step, check the actuator and the sign"},
         {Reason::time, "the longest time is over: take a longer max_time"},
         {Reason::settings, "the test cannot begin: u before the test is too near to a limit of u, or beyond it"},
@@ -109,7 +110,9 @@ Block ExperimentFrame::fault(ExperimentReason reason) const {
     return {set(ExperimentMode::stopped), assign(reason_now_, whole(static_cast<int>(reason)))};
 }
 
-Block ExperimentFrame::take_size(const Expr& to, const Expr& x) { return {assign(to, x), when(to < 0, {assign(to, -to)})}; }
+Block ExperimentFrame::take_size(const Expr& to, const Expr& x) {
+    return {assign(to, x), when(to < 0, {assign(to, -to)})};
+}
 
 Program ExperimentFrame::build() {
     add_start();
@@ -141,14 +144,14 @@ void ExperimentFrame::add_start() {
 }
 
 Block ExperimentFrame::begin_all() {
-    Block block{set(ExperimentMode::quiet), assign(reason_now_, whole(0)), assign(u0_, u_controller_),
+    Block block{set(ExperimentMode::quiet),     assign(reason_now_, whole(0)),  assign(u0_, u_controller_),
                 assign(target_, u_controller_), assign(u_last_, u_controller_), assign(timed_, now_ >= 0.0)};
     block.push_back(assign(now_last_, now_ - Ts_));
     block.push_back(assign(y_last_, y_));
     block.push_back(assign(y0_, y_));
     block.push_back(assign(t_, -Ts_));
-    for (const Expr& x : {t_phase_, noise_, hysteresis_, calls_, sum_, changes_, least_change_, unchanged_, run_,
-                          longest_run_})
+    for (const Expr& x :
+         {t_phase_, noise_, hysteresis_, calls_, sum_, changes_, least_change_, unchanged_, run_, longest_run_})
         block.push_back(assign(x, 0.0));
     block += begin();
     const Expr outside = inverse(both(u0_ >= u_min_, inverse(u0_ > u_max_)));
@@ -158,13 +161,14 @@ Block ExperimentFrame::begin_all() {
 
 void ExperimentFrame::add_stop() {
     add(remark("The end by the operator: u goes back at once."));
-    const Expr runs = either(is(ExperimentMode::quiet), either(is(ExperimentMode::first_move), is(ExperimentMode::test)));
+    const Expr runs =
+        either(is(ExperimentMode::quiet), either(is(ExperimentMode::first_move), is(ExperimentMode::test)));
     add(assign(u_, u_controller_));
     add(assign(recording_, truth(false)));
-    add(when(inverse(start_), {when(runs, {assign(reason_now_, whole(static_cast<int>(ExperimentReason::by_operator))),
-                                           assign(u_, u0_)},
-                                    {when(mode_now_ != whole(0), {assign(u_, u_last_)})}),
-                               assign(u_last_, u_), set(ExperimentMode::idle)}));
+    add(when(inverse(start_),
+             {when(runs, {assign(reason_now_, whole(static_cast<int>(ExperimentReason::by_operator))), assign(u_, u0_)},
+                   {when(mode_now_ != whole(0), {assign(u_, u_last_)})}),
+              assign(u_last_, u_), set(ExperimentMode::idle)}));
 }
 
 void ExperimentFrame::check(const Expr& wrong, ExperimentReason reason) {
@@ -177,7 +181,7 @@ void ExperimentFrame::check(const Expr& wrong, ExperimentReason reason) {
 
 void ExperimentFrame::add_faults() {
     add(remark("The faults, the gravest first. A value that is not a number equals nothing, itself included."));
-    dt_ = let("dt", "time since the last call", Ts_);
+    dt_ = let("elapsed_now", "time since the last call in s", Ts_);
     add(when(timed_, {assign(dt_, now_ - now_last_)}));
     difference_ = local("difference", "of u_actual from u");
     add(take_size(difference_, u_actual_ - u_last_));
@@ -227,16 +231,17 @@ Block ExperimentFrame::end_of_quiet() {
 }
 
 std::vector<std::string> ExperimentFrame::with_common_notes(std::vector<std::string> own) {
-    own.insert(own.end(),
-               {"Wiring: u_controller is the output of the loop's controller, u goes to the actuator. While mode is not 0, "
-                "keep the controller in manual with u as its manual output; it then takes over without a jump.",
-                "start: when it rises, u is held for quiet_time, in which the noise of y and its level y0 are measured; "
-                "then the test begins. It ends by itself with u as before the test. When start falls, a running test ends "
-                "at once in the same way. Each call with recording true gives one row t, u, y of the record.",
-                "Faults: a bad measurement (measurement_ok false, or not a number), one that stays the same for too long, "
-                "y beyond y_min or y_max, an actuator that reads back another u, a clock that jumps, a start that is true "
-                "in the first call, as after a loss of power, no response, max_time. From that call on u is u_safe, or u "
-                "as before the test, until start falls. reason says which fault it was."});
+    own.insert(
+        own.end(),
+        {"Wiring: u_controller is the output of the loop's controller, u goes to the actuator. While mode is not 0, "
+         "keep the controller in manual with u as its manual output; it then takes over without a jump.",
+         "start: when it rises, u is held for quiet_time, in which the noise of y and its level y0 are measured; "
+         "then the test begins. It ends by itself with u as before the test. When start falls, a running test ends "
+         "at once in the same way. Each call with recording true gives one row t, u, y of the record.",
+         "Faults: a bad measurement (measurement_ok false, or not a number), one that stays the same for too long, "
+         "y beyond y_min or y_max, an actuator that reads back another u, a clock that jumps, a start that is true "
+         "in the first call, as after a loss of power, no response, max_time. From that call on u is u_safe, or u "
+         "as before the test, until start falls. reason says which fault it was."});
     return own;
 }
 
@@ -244,15 +249,14 @@ void ExperimentFrame::add_output() {
     add(remark("u: towards its target within its rate; after a fault the safe value at once."));
     const Expr moves = inverse(either(is(ExperimentMode::idle), is(ExperimentMode::stopped)));
     const Expr low = local("low", "least u of this call"), high = local("high", "largest u of this call");
-    Block to_target{assign(low, u_min_), assign(high, u_max_),
-                    when(rate_limit_ > 0, {assign(low, u_last_ - rate_limit_ * dt_),
-                                           assign(high, u_last_ + rate_limit_ * dt_)}),
-                    assign(u_, target_)};
+    Block to_target{
+        assign(low, u_min_), assign(high, u_max_),
+        when(rate_limit_ > 0, {assign(low, u_last_ - rate_limit_ * dt_), assign(high, u_last_ + rate_limit_ * dt_)}),
+        assign(u_, target_)};
     keep_within(to_target, u_, low, high);
     keep_within(to_target, u_, u_min_, u_max_);
     add(when(moves, std::move(to_target)));
-    add(when(is(ExperimentMode::stopped),
-             {assign(u_, u0_), when(u_safe_ < kNoLimit, {assign(u_, u_safe_)})}));
+    add(when(is(ExperimentMode::stopped), {assign(u_, u0_), when(u_safe_ < kNoLimit, {assign(u_, u_safe_)})}));
     add(remark("For the next call, and the row of the record."));
     add(assign(recording_, running_));
     add(assign(u_last_, u_));

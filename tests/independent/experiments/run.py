@@ -100,7 +100,7 @@ def run(case, chosen, chance, folder, number):
     size = 4 / np.pi * STEP * gain  # amplitude by the describing function
     reach = 8 * max(size, STEP * abs(plant.K) if not plant.integrators and not plant.unstable else size)
     options = dict(sample_time=Ts, u_step=STEP, u_min=0, u_max=100, y_min=Y0 - reach, y_max=Y0 + reach)
-    if chosen.experiment == "relay" and case["told"]:
+    if chosen.experiment == "relay" and case["told"] and not chosen.untold:
         options["action"] = "reverse" if plant.K > 0 else "direct"
     if chosen.experiment == "bump" and plant.integrators:
         options["y_move"] = 3 * size
@@ -135,6 +135,7 @@ def main():
     parser.add_argument("--Ms", type=float, default=1.4)
     parser.add_argument("--keep")
     parser.add_argument("--only", type=int)
+    parser.add_argument("--untold", action="store_true", help="the sign of the gain is never told")
     chosen = parser.parse_args()
     chance = random.Random(chosen.seed)
     with tempfile.TemporaryDirectory() as temporary:

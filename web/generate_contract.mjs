@@ -9,7 +9,7 @@ import openapiTS, { astToString } from "openapi-typescript";
 
 /** Types that the page sends; an answer with one of them contains it as sent. */
 const SENT = [
-  "CascadeRequest", "CheckRequest", "FeedforwardRequest", "IdentifyRequest", "InteractionRequest", "LevelRequest", "PlantQuestion",
+  "CascadeRequest", "CheckRequest", "ExperimentCodeRequest", "FeedforwardRequest", "IdentifyRequest", "InteractionRequest", "LevelRequest", "PlantQuestion",
   "PredictorRequest", "RangeRequest", "RelayRequest", "ScoreRequest", "TuningRequest",
 ];
 

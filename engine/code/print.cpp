@@ -172,9 +172,12 @@ std::string example_setting(const Program& program) {
     return gain == settings.end() ? "u_max" : gain->name;
 }
 
-std::string type_name(const Program& program) {
-    return std::string("Tunewright") + static_cast<char>(std::toupper(program.name.front())) + program.name.substr(1);
+static std::string capitalised(std::string text) {
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    return text;
 }
+
+std::string type_name(const Program& program) { return "Tunewright" + capitalised(program.name); }
 
 std::string output_names(const Program& program) {
     std::string out;
@@ -274,7 +277,7 @@ std::string settings_line(const Program& program) {
 
 std::vector<std::string> head_lines(const Program& program, const Provenance& provenance,
                                     const std::vector<std::string>& call) {
-    std::vector<std::string> lines{program.title + ", written by Tunewright " TUNEWRIGHT_VERSION "."};
+    std::vector<std::string> lines{capitalised(program.title) + ", written by Tunewright " TUNEWRIGHT_VERSION "."};
     lines.emplace_back();
     constexpr std::size_t kColumn = 14;
     for (const auto& [name, value] : provenance) {

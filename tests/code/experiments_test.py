@@ -180,6 +180,8 @@ class ExperimentsTest(unittest.TestCase):
                               ([*whole, "--action", "backward"], "action"),
                               ([*whole, "--cycles", "1.5"], "cycles"),
                               ([*whole, "--y0", "3"], "y0"),
+                              ([*whole, "--y-move", "3"], "y_move belongs to a bump"),
+                              (["--experiment", "bump", *whole[2:], "--cycles", "3"], "cycles belongs to a relay test"),
                               (["--experiment", "ramp", *whole[2:]], "relay or bump"),
                               (["--language", "c"], "--experiment relay or bump")):
             done = command(*words)

@@ -51,6 +51,16 @@ void add_limits(Description<Q>& d) {
                "y unchanged for longer is a fault; 0: found from the quiet time.", {.unit = "s"});
 }
 
+void refuse_others(const Json& value, Experiment experiment, Reader& reader) {
+    const bool relay = experiment == Experiment::relay;
+    const auto refuse = [&](const char* name) {
+        if (value.contains(name))
+            reader.fault_at(name, std::string(name) + " belongs to " + (relay ? "a bump" : "a relay test") + ". Leave it out.");
+    };
+    if (relay) return refuse("y_move");
+    for (const char* name : {"asymmetry", "cycles", "action"}) refuse(name);
+}
+
 }  // namespace
 
 const Description<ExperimentQuestion>& experiment_contract() {
@@ -66,7 +76,8 @@ const Description<ExperimentQuestion>& experiment_contract() {
                    {.required = true, .unit = "s"});
         add_sizes(d);
         add_limits(d);
-        d.check([](const Json&, Q& question, Reader& reader) {
+        d.check([](const Json& value, Q& question, Reader& reader) {
+            refuse_others(value, question.experiment, reader);
             const auto program = code::experiment_algorithm(question.experiment, question);
             if (!program) reader.fault_at(program.error().where, program.error().message);
         });

@@ -70,8 +70,11 @@ export interface TextFile {
 }
 
 /** A text file; a refusal is a problem, as with other calls. */
-export async function getText(path: string): Promise<TextFile> {
-  const { response, text } = await answerOf("GET", path, undefined, { Accept: "text/*, application/problem+json" });
+export const getText = (path: string): Promise<TextFile> => textOf("GET", path, undefined);
+export const postText = (path: string, body: unknown): Promise<TextFile> => textOf("POST", path, body);
+
+async function textOf(method: string, path: string, body: unknown): Promise<TextFile> {
+  const { response, text } = await answerOf(method, path, body, { Accept: "text/*, application/problem+json" });
   if (!response.ok) throw new ApiError(problemOf(parse(text), response.status), response.status, retryAfter(response));
   const name = /filename="([^"]+)"/.exec(response.headers.get("Content-Disposition") ?? "")?.[1];
   return { text, name: name ?? "" };

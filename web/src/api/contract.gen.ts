@@ -2375,6 +2375,26 @@ export type components = {
       seed?: number;
       shift?: number;
     };
+    ExperimentCodeRequest: {
+      experiment: "relay" | "bump";
+      language: "st" | "c" | "python" | "arduino";
+      sample_time: number;
+      u_step: number;
+      asymmetry?: number;
+      cycles?: number;
+      action?: "find" | "reverse" | "direct";
+      y_move?: number;
+      hysteresis?: number;
+      u_min?: number;
+      u_max?: number;
+      y_min?: number;
+      y_max?: number;
+      u_safe?: number;
+      rate_limit?: number;
+      quiet_time?: number;
+      max_time?: number;
+      frozen_time?: number;
+    };
     RelayAnswer: {
       record: components["schemas"]["RelayRecord"];
       limit_cycle: components["schemas"]["LimitCycle"];
@@ -2721,6 +2741,7 @@ export type SkippedLine = components['schemas']['SkippedLine'];
 export type ReadingProblem = components['schemas']['ReadingProblem'];
 export type RelayRequest = components['schemas']['RelayRequest'];
 export type Relay = components['schemas']['Relay'];
+export type ExperimentCodeRequest = components['schemas']['ExperimentCodeRequest'];
 export type RelayAnswer = components['schemas']['RelayAnswer'];
 export type RelayRecord = components['schemas']['RelayRecord'];
 export type RelayPlan = components['schemas']['RelayPlan'];

@@ -1,8 +1,8 @@
 // Products: the list, the settings to type, and the effect on a loop; and a controller as source text.
-import { call, getText } from "./client.ts";
+import { call, getText, postText } from "./client.ts";
 import type { TextFile } from "./client.ts";
 import { settingsOf } from "./evaluate.ts";
-import type { AsEntered, Controller, Implement, Product, ProductSummary, ScheduleRow, SettingValue, TypedSchedule, Units } from "./types.ts";
+import type { AsEntered, Controller, ExperimentQuestion, Implement, Product, ProductSummary, ScheduleRow, SettingValue, TypedSchedule, Units } from "./types.ts";
 
 export async function getProducts(): Promise<ProductSummary[]> {
   const data = (await call("GET", "v1/controllers")).data as { controllers?: ProductSummary[] } | null;
@@ -61,7 +61,7 @@ export async function scheduleSettingsFor(
   return (await call("POST", `v1/controllers/${encodeURIComponent(product)}/schedule`, body)).data as TypedSchedule;
 }
 
-export type Language = "st" | "c" | "python";
+export type Language = ExperimentQuestion["language"];
 
 export interface CodeQuestion {
   job: string;
@@ -81,3 +81,4 @@ export function codePath({ job, index, ...question }: CodeQuestion): string {
 }
 
 export const getCode = (question: CodeQuestion): Promise<TextFile> => getText(codePath(question));
+export const getExperiment = (question: Partial<ExperimentQuestion>): Promise<TextFile> => postText("v1/experiments/code", question);

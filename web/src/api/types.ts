@@ -4,6 +4,7 @@ import type * as Contract from "./contract.gen.ts";
 import type { Schema } from "./method.ts";
 
 export type {
+  ExperimentCodeRequest as ExperimentQuestion,
   Batch,
   BatchCheck,
   Certificate,

@@ -2,8 +2,8 @@
 import type { Job, RangeContent } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import { formatRoute } from "../routes.ts";
-import { codeCard } from "../views/cards/code_card.ts";
-import type { CodeCard } from "../views/cards/code_card.ts";
+import { codeCard } from "../program/code_card.ts";
+import type { CodeCard } from "../program/code_card.ts";
 import { formatSetting, unitNames, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { counted, interpolationWords, settingHead, settingsOfOne, settingWords } from "../words/range.ts";

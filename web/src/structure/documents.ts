@@ -3,7 +3,7 @@ import { ApiError, sentenceOf } from "../api/client.ts";
 import { endedStructure, postStructure } from "../api/structure.ts";
 import type { StructureQuestion } from "../api/structure.ts";
 import { h } from "../dom.ts";
-import { codeCard } from "../views/cards/code_card.ts";
+import { codeCard } from "../program/code_card.ts";
 import { reportLink } from "../views/report_link.ts";
 import type { UnitNames } from "../words/numbers.ts";
 

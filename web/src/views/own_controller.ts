@@ -19,7 +19,7 @@ import { formulaLine, rememberedForm, rememberForm, settingsOf, settingsText } f
 import type { TextbookForm } from "../words/settings.ts";
 import { answerCard } from "./cards/answer_card.ts";
 import type { Answer } from "./cards/answer_card.ts";
-import { codeCard } from "./cards/code_card.ts";
+import { codeCard } from "../program/code_card.ts";
 import { productDetails, productTroubles } from "./cards/in_product.ts";
 import { myControllerCard } from "./cards/my_controller_card.ts";
 import { ownTodayCard } from "./cards/own_today_card.ts";

@@ -12,6 +12,7 @@ import { createPlot } from "../plot/plot.ts";
 import type { Plot } from "../plot/plot.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
 import { planSentences } from "../words/relay_plan.ts";
+import { experimentCard } from "../program/experiment_card.ts";
 import { cycleCard } from "./cards/cycle_card.ts";
 import { requestMenu } from "./request_menu.ts";
 import type { View } from "./start.ts";
@@ -101,6 +102,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
   const planText = h("div", { class: "stack" });
   const planCard = h("section", { class: "card plan", "aria-labelledby": planTitle.id }, planTitle, planText);
   const cycle = cycleCard();
+  const program = experimentCard(announce);
   const stale = staleMark(() => results);
   const results = h(
     "div",
@@ -121,6 +123,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     h("div", { class: "identify-head" }, heading, busy, menu.element),
     errors.summary,
     h("div", { class: "relay-body" }, form, results),
+    program.element,
   );
 
   function read(): { request: RelayRequest; errors: FieldError[] } {
@@ -164,6 +167,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
       remarks.replaceChildren(...sentences.map((sentence) => h("li", {}, sentence)));
       cycle.show(next.limit_cycle, null, [], units);
       showPlan(next.plan);
+      program.propose(next.plan, units);
       announce(`Oscillates with a period of ${formatNumber(next.limit_cycle.Pu, 4)} ${units.time}.`);
     },
     onError(error) {
@@ -229,10 +233,12 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     dispose() {
       calls.drop();
       plot?.dispose();
+      program.dispose();
     },
     open(id, values) {
       units = unitNames(events.units());
       plant.setUnits(units);
+      program.setUnits(units);
       for (const { unit, field } of settings) field.setUnit(unit === "" ? "" : units[unit]);
       if (id !== "") plant.loadTyped(id, values);
       simulate();

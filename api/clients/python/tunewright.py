@@ -308,6 +308,12 @@ class Client:
         """Simulates and plans a relay test: {"record", "limit_cycle", "plan", ...}."""
         return self._post("/v1/experiments/relay", plant=plant, relay=relay, **rest)
 
+    def experiment(self, experiment: str = "relay", language: str = "python", **rest: Any) -> str:
+        """The program of a test that a controller runs by itself, "relay" or "bump": sample_time=0.5, u_step=5, ..."""
+        body = _request(experiment=experiment, language=language, **rest)
+        with self._open("POST", "/v1/experiments/code", body) as response:
+            return response.read().decode()
+
     def settings(self, product: str, controller: Mapping[str, Any], **rest: Any) -> Json:
         """The settings to type into a product for a controller: {"settings", "units", "as_typed", "realised",
         "notes"}."""

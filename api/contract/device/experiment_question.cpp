@@ -55,7 +55,8 @@ void refuse_others(const Json& value, Experiment experiment, Reader& reader) {
     const bool relay = experiment == Experiment::relay;
     const auto refuse = [&](const char* name) {
         if (value.contains(name))
-            reader.fault_at(name, std::string(name) + " belongs to " + (relay ? "a bump" : "a relay test") + ". Leave it out.");
+            reader.fault_at(
+                name, std::string(name) + " belongs to " + (relay ? "a bump" : "a relay test") + ". Leave it out.");
     };
     if (relay) return refuse("y_move");
     for (const char* name : {"asymmetry", "cycles", "action"}) refuse(name);

@@ -8,6 +8,7 @@
 #include "engine/identification/fit/residual_noise.h"
 #include "engine/identification/fit/starting_values.h"
 #include "engine/identification/record/series.h"
+#include "engine/identification/relay_test/recorded_cycle.h"
 #include "engine/number_text.h"
 
 namespace tunewright {
@@ -151,6 +152,8 @@ FitContext fit_context(CleanRecord record, bool relay, const RunControl& control
     context.record = std::move(record);
     context.start = start_of(context.record, relay, context.noise);
     context.relay = relay;
+    if (relay)
+        if (const auto cycle = find_cycle(context.record, context.noise)) context.gain_sign = cycle->reversed ? -1 : 1;
     context.stop = control.stop;
     context.spread = control.spread;
     return context;

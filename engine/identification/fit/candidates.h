@@ -19,6 +19,7 @@ struct FitContext {
     double noise = 0;    ///< standard deviation of the changes from sample to sample, with rounding
     double grid = 0;     ///< step of y's rounding, 0 if none
     bool relay = false;  ///< true: a relay test
+    int gain_sign = 0;   ///< of the static gain with which the relay oscillates; 0: not known
     RecordStart start = RecordStart::at_rest;
     std::vector<FrequencyConstraint> anchors;  ///< measured values that every model must fit
     std::stop_token stop;

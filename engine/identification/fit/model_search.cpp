@@ -67,6 +67,23 @@ void report(const RunControl& control, double fraction, std::string message) {
     if (control.progress) control.progress({fraction, "identify", std::move(message), nullptr});
 }
 
+/// A relay with the wrong sign does not oscillate. A structure whose gain has that sign explains a drift or a load
+/// instead, and is left out unless the others explain much less.
+void leave_out_wrong_signs(ModelSearch& search) {
+    const auto wrong = [&](const Fit& fit) {
+        return search.context.gain_sign != 0 && fit.form.structure != Structure::unstable &&
+               fit.linear[0] * search.context.gain_sign < 0;
+    };
+    double best = 0, best_right = 0;
+    for (std::size_t i = 0; i < search.fits.size(); ++i) {
+        if (!search.fits[i].determined) continue;
+        best = std::max(best, search.percents[i]);
+        if (!wrong(search.fits[i])) best_right = std::max(best_right, search.percents[i]);
+    }
+    if (best_right < best - k.max_sign_cost) return;
+    for (Fit& fit : search.fits) fit.determined = fit.determined && !wrong(fit);
+}
+
 ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const Disturbances& disturbances) {
     std::erase_if(fits, [&](const Fit& fit) {
         return std::find(plan.answers.begin(), plan.answers.end(), fit.form.structure) == plan.answers.end();
@@ -80,6 +97,7 @@ ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, 
         search.criteria.push_back(information_criterion(fit, search.independent, min));
         search.percents.push_back(fit_percent(search.context.record, fit));
     }
+    leave_out_wrong_signs(search);
     search.choice = choose(search.fits, search.criteria, search.percents, search.independent);
     if (search.choice.index < 0) return search;
     const auto chosen = static_cast<std::size_t>(search.choice.index);

@@ -1,4 +1,5 @@
-// The programs of tests that a controller runs by itself, executed on simulated plants: how they end, what each fault does.
+// The programs of tests that a controller runs by itself, executed on simulated plants: how they end, what each fault
+// does.
 #include "engine/code/experiment/experiment.h"
 
 #include <gmock/gmock.h>
@@ -9,6 +10,7 @@
 #include <random>
 
 #include "engine/code/interpreter.h"
+#include "engine/identification/identify.h"
 
 namespace tunewright::code {
 namespace {
@@ -43,7 +45,10 @@ struct FirstOrder {
 class Trial {
 public:
     Trial(Experiment kind, const ExperimentOptions& options, FirstOrder plant = {}, double noise = 0)
-        : program_(*experiment_algorithm(kind, options)), plant_(plant), noise_(0, noise > 0 ? noise : 1), noisy_(noise > 0) {
+        : program_(*experiment_algorithm(kind, options)),
+          plant_(plant),
+          noise_(0, noise > 0 ? noise : 1),
+          noisy_(noise > 0) {
         for (const Declaration& input : of_role(program_of(kind, options), VariableRole::input))
             program_[input.name] = input.initial;
         program_["u_controller"] = kU0;
@@ -51,11 +56,11 @@ public:
         program_["start"] = 1;
     }
 
-    void call() {
+    void call(double load = 0) {
         if (!held_) program_["measurement"] = kY0 + plant_.y + (noisy_ ? noise_(engine_) : 0);
         program_["now"] = clock_;
         program_.call();
-        plant_.advance(u() - kU0);
+        plant_.advance(u() - kU0 + load);
         clock_ += kTs;
     }
     /// Calls until the mode or the end.
@@ -164,7 +169,8 @@ TEST(RelayProgram, KeepsTheRateOfUButForAFault) {
 TEST(RelayProgram, TurnsASignThatTheFirstMoveMisled) {
     // (1 - 4 s)/((10 s + 1)(8 s + 1)): y first moves the wrong way.
     Interpreter program(*experiment_algorithm(Experiment::relay, options()));
-    for (const char* name : {"measurement_ok", "now", "u_actual"}) program[name] = name[0] == 'm' ? 1 : name[0] == 'n' ? -1 : 1e30;
+    for (const char* name : {"measurement_ok", "now", "u_actual"})
+        program[name] = name[0] == 'm' ? 1 : name[0] == 'n' ? -1 : 1e30;
     double x1 = 0, x2 = 0;
     program["u_controller"] = kU0;
     program["measurement"] = kY0;
@@ -236,6 +242,51 @@ TEST(ExperimentProgram, EveryCallOfATestIsARow) {
     EXPECT_EQ(run["recording"], 1);  // the last call too
     run.call();
     EXPECT_EQ(run["recording"], 0);
+}
+
+/// The record of a relay test on a plant whose load grows by `drift` u in every call.
+Record recorded(const FirstOrder& plant, Action action, double drift) {
+    ExperimentOptions asked = options();
+    asked.y_min = -500, asked.y_max = 500, asked.action = action;
+    Trial run(Experiment::relay, asked, plant);
+    Record record;
+    for (double load = 0; run.mode() < Mode::done; load += drift) {
+        run.call(load);
+        if (run["recording"] == 0) continue;
+        record.t.push_back(run["t"]);
+        record.u.push_back(run.u());
+        record.y.push_back(run["y_last"]);
+    }
+    EXPECT_EQ(run.mode(), Mode::done);
+    return record;
+}
+
+TEST(RelayProgram, ItsRecordShowsThePlant) {
+    struct Case {
+        FirstOrder plant;
+        Action action;
+        double drift, error;
+    };
+    for (const Case& c : {Case{{.K = 1, .T = 10, .late = 4}, Action::find, 0, 1e-4},
+                          Case{{.K = -2, .T = 40, .late = 3}, Action::find, 0, 1e-4},
+                          Case{{.K = -1.2, .T = -20, .late = 12}, Action::reverse, 0, 1e-3}}) {  // grows e^20-fold
+        const auto model = identify(recorded(c.plant, c.action, c.drift), {}, {});
+        ASSERT_TRUE(model) << model.error().message;
+        const auto* plant = std::get_if<Fopdt>(&model->plant);
+        ASSERT_NE(plant, nullptr) << c.plant.T;
+        // For a negative T the plant K/(T s + 1) is written with its own signs.
+        EXPECT_NEAR(plant->K, c.plant.K, c.error * std::abs(c.plant.K));
+        EXPECT_NEAR(plant->T, c.plant.T, c.error * std::abs(c.plant.T));
+        EXPECT_NEAR(plant->L, c.plant.late * kTs, 0.05 * c.plant.late * kTs);
+    }
+}
+
+TEST(RelayProgram, ALoadThatGrowsGivesNoGainOfTheWrongSign) {
+    for (const double drift : {-0.01, -0.006}) {
+        const auto model = identify(recorded({.K = 0.5, .T = 24, .late = 18}, Action::reverse, drift), {}, {});
+        ASSERT_TRUE(model) << model.error().message;
+        for (const Warning& warning : model->warnings) EXPECT_NE(warning.level, WarningLevel::bad) << warning.detail;
+    }
 }
 
 struct Fault {
@@ -333,8 +384,12 @@ TEST(ExperimentProgram, TheOperatorEndsItAtOnceWithUAsBefore) {
 }
 
 TEST(ExperimentProgram, ALevelOutOfReachIsRefusedAtTheStart) {
-    for (const auto& [u, kind] : {std::pair{100.0, Experiment::relay}, {0.0, Experiment::relay}, {101.0, Experiment::relay},
-                                  {99.5, Experiment::bump}, {-1.0, Experiment::bump}, {kNan, Experiment::bump}}) {
+    for (const auto& [u, kind] : {std::pair{100.0, Experiment::relay},
+                                  {0.0, Experiment::relay},
+                                  {101.0, Experiment::relay},
+                                  {99.5, Experiment::bump},
+                                  {-1.0, Experiment::bump},
+                                  {kNan, Experiment::bump}}) {
         Trial run(kind, options());
         run["u_controller"] = u;
         run.call();

@@ -44,7 +44,7 @@ test("a bump, and what is wrong stands at its field", async () => {
     await card.getByLabel(/^Least u/).fill("5");
     await card.getByLabel(/^Largest u/).fill("3");
     await card.getByLabel(/^Largest u/).blur();
-    await card.getByText("u_max must be > u_min.").waitFor();
+    await card.getByText(/ is 3 and .* must be > /).waitFor();
   }, ["422"]);
 });
 

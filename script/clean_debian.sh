@@ -110,7 +110,7 @@ unpack_packages() {
     if [ "${package#-}" = "$package" ]; then names+=("$package"); else alone+=("${package#-}"); fi
   done
   rm -rf "$folder" "$apt"
-  mkdir -p "$apt"/{lists,archives}/partial "$folder/usr"/{lib,bin,sbin}
+  mkdir -p "$apt"/{lists,archives}/partial "$folder/usr"/{lib,lib64,bin,sbin}
   : >"$apt/status"
   sources "$suite" >"$apt/sources.list"
   cat >"$apt/apt.conf" <<EOF
@@ -130,7 +130,7 @@ EOF
   if [ ${#alone[@]} != 0 ]; then (cd "$apt/archives" && apt-get download -q "${alone[@]}"); fi
   unset APT_CONFIG
   # As on every Debian of today; packages of Debian 12 still name both places.
-  for file in lib bin sbin; do ln -s "usr/$file" "$folder/$file"; done
+  for file in lib lib64 bin sbin; do ln -s "usr/$file" "$folder/$file"; done
   for file in "$apt"/archives/*.deb; do
     dpkg-deb --fsys-tarfile "$file" | tar -x --keep-directory-symlink --no-same-owner -C "$folder"
   done

@@ -99,6 +99,11 @@ class BillOfMaterialsTest(unittest.TestCase):
         image = json.loads(self.bill("bash\nlibc6\n", packages, bill).stdout)
         self.assertEqual(len(image["components"]), 5)
 
+    def test_a_library_may_be_named_by_what_its_package_provides(self):
+        packages = "libspdlog1.10\t1:1.10\tarm64\tlibspdlog1.10-fmt9, libspdlog-abi (= 1)\n"
+        done = self.bill("libspdlog1.10-fmt9, libspdlog1.10 (>= 1)", packages, {})
+        self.assertEqual([component["name"] for component in json.loads(done.stdout)["components"]], ["libspdlog1.10"])
+
     def test_a_library_without_a_version_is_an_error(self):
         done = self.bill("libc6, libgone1", "libc6\t2.41\tarm64\n", {})
         self.assertIn("libgone1", done.stderr)

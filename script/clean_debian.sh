@@ -22,7 +22,7 @@ can_make_systems() {
 archives() { apt-get indextargets --format '$(LABEL) $(REPO_URI)' 'Identifier: Packages' 'Origin: Debian' | sort -u; }
 
 # has_suite ADDRESS SUITE: asked with apt's own settings.
-has_suite() { /usr/lib/apt/apt-helper download-file "$1dists/$2/InRelease" "$place/release" >/dev/null 2>&1; }
+has_suite() { /usr/lib/apt/apt-helper download-file "$1dists/$2/InRelease" "$place/debian-suite" >/dev/null 2>&1; }
 
 # sources SUITE: the suite, its updates and its security updates, as apt's list of sources.
 sources() {

@@ -43,7 +43,7 @@ RUN { echo "# Debian packages of this image"; /tmp/sbom '*'; \
 COPY --from=page /src/build/web /opt/tunewright/web
 COPY --from=binary /src/build/release/tunewright /opt/tunewright/bin/tunewright
 # The version is CMakeLists.txt's. Whoever builds from sources of his own says where they are.
-ARG VERSION=0.1.0
+ARG VERSION=1.0.0
 ARG SOURCE=https://tunewright.example/source
 LABEL org.opencontainers.image.title="Tunewright" \
       org.opencontainers.image.description="Tunes PID controllers over HTTP, in a browser and on the command line" \

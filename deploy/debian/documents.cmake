@@ -2,7 +2,7 @@
 # binary itself, which knows its commands and options.
 file(MAKE_DIRECTORY "${documents}")
 function(tunewright_says file)
-  execute_process(COMMAND "${program}" ${ARGN} OUTPUT_FILE "${documents}/${file}" COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${program} ${ARGN} OUTPUT_FILE "${documents}/${file}" COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 tunewright_says(tunewright.1 manual)
 tunewright_says(tunewright completion bash)

@@ -9,7 +9,7 @@ install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md DES
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 
 set(documents ${CMAKE_CURRENT_BINARY_DIR}/documents)
-install(CODE "set(program \"$<TARGET_FILE:tunewright>\")\nset(documents \"${documents}\")")
+install(CODE "set(program ${CMAKE_CROSSCOMPILING_EMULATOR} \"$<TARGET_FILE:tunewright>\")\nset(documents \"${documents}\")")
 install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/documents.cmake)
 install(FILES ${documents}/tunewright.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${documents}/tunewright DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
@@ -28,6 +28,14 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "tunes PID controllers over HTTP, in a bro
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "A plant model or a recorded test goes in; controller settings come out, with their
  robustness, their performance and the responses of the loop.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+if(CMAKE_CROSSCOMPILING)
+  # Which packages have the libraries is read from those that are unpacked for the other architecture.
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE})
+  set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_BINARY_DIR}/other_architecture.cmake)
+  file(WRITE ${CPACK_PROJECT_CONFIG_FILE}
+       "set(ENV{DEB_HOST_ARCH} ${CPACK_DEBIAN_PACKAGE_ARCHITECTURE})\nset(ENV{DPKG_ADMINDIR} ${CMAKE_SYSROOT}/var/lib/dpkg)\n")
+endif()
 # By which it verifies those whom it tells of ends.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS ca-certificates)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)

@@ -56,6 +56,23 @@ class PackageTest(unittest.TestCase):
         kept = sorted(path.name for path in self.source.rglob("*") if "__pycache__" not in path.parts)
         self.assertEqual(kept, ["README.md", "backend", "pyproject.toml", "tunewright.py", "wheel_backend.py"])
 
+    def test_its_source_archive_installs_too_and_both_are_the_same_every_time(self):
+        build = ("import sys; sys.path.insert(0, sys.argv[1]); import wheel_backend as backend; "
+                 "backend.build_wheel(sys.argv[2]); print(backend.build_sdist(sys.argv[2]))")
+        folders = [pathlib.Path(self.folder.name, name) for name in ("once", "twice")]
+        for folder in folders:
+            folder.mkdir()
+            sdist = self.run_in_folder(self.python, "-c", build, str(self.source / "backend"), str(folder)).strip()
+        made = [{path.name: path.read_bytes() for path in folder.iterdir()} for folder in folders]
+        self.assertEqual(len(made[0]), 2)
+        self.assertEqual(made[0], made[1])
+        shutil.unpack_archive(folders[0] / sdist, folders[0])
+        module = folders[0] / sdist[:-len(".tar.gz")] / "tunewright.py"
+        self.assertEqual(module.read_bytes(), (self.source / "tunewright.py").read_bytes())
+        self.run_in_folder(self.python, "-m", "pip", "install", "--no-index", "--force-reinstall", "--no-deps",
+                           "--disable-pip-version-check", str(folders[0] / sdist),
+                           environment={"PIP_CONFIG_FILE": os.devnull})
+
     def test_its_version_is_the_services(self):
         version = re.search(r"\d+\.\d+\.\d+", subprocess.run([BINARY, "--version"], check=True, capture_output=True,
                                                             text=True).stdout).group()

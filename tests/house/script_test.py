@@ -14,12 +14,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = sorted(path.name for path in (ROOT / "script").iterdir() if path.suffix == "")
 # An argument that a script does not have, and the text of its refusal.
 WRONG = {
-    "bootstrap": (["biuld"], ["build", "page", "test", "style", "check", "bench", "peers"]),
+    "bootstrap": (["biuld"], ["build", "page", "test", "style", "check", "bench", "peers", "package", "arm64"]),
     "build": (["alles"], ["all"]),
     "test": (["engine"], ["--style", "--long", "tests/README.md"]),
-    "check": (["tydi"], ["format", "tidy", "asan", "tsan", "fuzz", "api-fuzz", "--changed"]),
+    "check": (["tydi"], ["format", "tidy", "asan", "tsan", "fuzz", "api-fuzz", "arm64", "--changed"]),
     "format": (["--chek"], ["--check"]),
     "bench": (["robust"], ["robust_batch", "comparison_bench", "load", "endurance", "records", "peers", "families"]),
+    "release": (["--system", "bokworm/amd64"], ["bookworm/amd64", "bookworm/arm64", "trixie/amd64", "trixie/arm64", "none"]),
     "newcomer": (["bokworm"], ["bookworm", "trixie"]),
     "pictures": (["--only", "desing"], ["design", "identify"]),
 }
@@ -66,7 +67,7 @@ class WordsTest(unittest.TestCase):
 
     def test_a_second_word_is_no_less_wrong(self):
         for name, words in (("build", ["all", "page"]), ("format", ["--check", "engine"]), ("check", ["format", "tydi"]),
-                            ("bench", ["robust_batch", "robust"]), ("pictures", ["--quick"])):
+                            ("bench", ["robust_batch", "robust"]), ("pictures", ["--quick"]), ("release", ["--native", "all"]), ("release", ["--into", "/"])):
             with self.subTest(script=name):
                 self.assertEqual(self.run_script(name, *words).returncode, 2)
 

@@ -364,6 +364,14 @@ CREATE INDEX waiting_clients ON waiting (flow, batch, class) WHERE class > 0 AND
 
 constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4, kStep5, kStep6, kStep7};
 
+/// In one transaction: if one of them fails, the file is as it was, for a program of its schema too.
+void take_steps(SQLite::Database& database, const SchemaState& state) {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    for (int step = state.have; step < state.known; step++) database.exec(kSteps[static_cast<std::size_t>(step)]);
+    database.exec("PRAGMA user_version = " + std::to_string(state.known));
+    transaction.commit();
+}
+
 }  // namespace
 
 SchemaState schema_state(SQLite::Database& database) {
@@ -379,12 +387,7 @@ void migrate(SQLite::Database& database) {
     const SchemaState state = schema_state(database);
     // A table that is created again is dropped once; the requests and results of its rows must not be deleted with it.
     database.exec("PRAGMA foreign_keys = OFF");
-    for (int step = state.have; step < state.known; step++) {
-        SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-        database.exec(kSteps[static_cast<std::size_t>(step)]);
-        database.exec("PRAGMA user_version = " + std::to_string(step + 1));
-        transaction.commit();
-    }
+    if (state.have < state.known) take_steps(database, state);
     database.exec("PRAGMA foreign_keys = ON");
 }
 

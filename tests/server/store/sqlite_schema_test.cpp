@@ -58,6 +58,22 @@ TEST(SqliteSchema, AFileOfTheFirstVersionKeepsEverythingItHolds) {
     EXPECT_EQ(run_sqlite(folder.file(), "PRAGMA integrity_check"), "ok");
 }
 
+TEST(SqliteSchema, AFailedUpgradeLeavesTheFileAsItWas) {
+    const TemporaryFolder folder;
+    // A table that a later step wants to create.
+    run_sqlite(folder.file(), "PRAGMA foreign_keys = ON;" + text_of(test_data("store/first_version.sql")) +
+                                  "CREATE TABLE workers (of_somebody_else TEXT);");
+    const auto tables = "SELECT group_concat(name || sql) FROM (SELECT * FROM sqlite_schema ORDER BY name)";
+    const std::string before = run_sqlite(folder.file(), tables);
+    EXPECT_ANY_THROW(open_sqlite_store(folder.file(), SchemaSteps::take));
+    EXPECT_EQ(run_sqlite(folder.file(), "PRAGMA user_version"), "1");
+    EXPECT_EQ(run_sqlite(folder.file(), tables), before);
+    EXPECT_EQ(run_sqlite(folder.file(), "SELECT count(*) FROM jobs JOIN requests USING (seq)"), "5");
+
+    run_sqlite(folder.file(), "DROP TABLE workers");
+    EXPECT_EQ(open_sqlite_store(folder.file(), SchemaSteps::take)->find("done").value().result, R"({"x":1})");
+}
+
 /// A file of the fourth schema with jobs in every state, opened.
 class SqliteFourthSchema : public testing::Test {
 protected:

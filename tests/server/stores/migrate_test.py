@@ -1,6 +1,8 @@
 """A store of an older program: migrated at the start or by hand, with its data, by a role with the rights."""
 
+import gzip
 import http.client
+import json
 import os
 import pathlib
 import signal
@@ -175,6 +177,50 @@ class SqliteTest(unittest.TestCase):
         newest = done.stdout.split("at step ")[1].split(";")[0]
         self.assertGreater(int(newest), 4)
         self.assertIn("it was at %s." % newest, migrate("sqlite:" + self.path).stdout)
+
+    def listed(self, service):
+        """Every job of the service by its id, page by page."""
+        jobs, path = {}, "/v1/jobs?limit=100"
+        while path:
+            page = service.get(path).json
+            jobs.update((job["id"], job) for job in page["jobs"])
+            path = page["next"]
+        return jobs
+
+    def test_every_job_of_the_first_program_with_a_store_is_kept_and_what_waited_runs(self):
+        connection = sqlite3.connect(self.path)
+        connection.executescript(gzip.decompress((DATA / "first_version_filled.sql.gz").read_bytes()).decode())
+        old = {row[0]: row[1:] for row in connection.execute(
+            "SELECT id, status, name, requests.body, results.body, error FROM jobs JOIN requests USING (seq) "
+            "LEFT JOIN results USING (seq)")}
+        (key, job_of_key), = connection.execute("SELECT key, id FROM idempotency_keys JOIN jobs USING (seq) WHERE key = 'key-5'")
+        connection.close()
+        self.assertEqual(len(old), 273)
+        ended = {}
+        with Service("--workers", "2", "--retention", "0", store=self.path) as service:
+            jobs = self.listed(service)
+            self.assertEqual(jobs.keys(), old.keys())
+            running = next(id for id, row in old.items() if row[0] == "running")
+            service.post("/v1/jobs/%s/cancel" % running, "")
+            for id, (status, name, request, result, error) in old.items():
+                self.assertEqual(jobs[id]["name"], name)
+                job = service.job(id)
+                self.assertEqual(job["request"], json.loads(request))
+                if status in ("succeeded", "failed", "cancelled"):
+                    self.assertEqual(job["status"], status)
+                    self.assertEqual(job.get("result"), json.loads(result) if result else None)
+                    self.assertEqual(job.get("error"), json.loads(error) if error else None)
+                elif status == "queued":
+                    job = service.wait_for(id)
+                    self.assertEqual(job["status"], "succeeded", job.get("error"))
+                    ended[id] = job["result"]
+            again = service.post("/v1/jobs", old[job_of_key][2], {"Idempotency-Key": key})
+            self.assertEqual(again.json["id"], job_of_key)
+        self.assertEqual(len(ended), 53)
+        with Service("--workers", "1", "--retention", "0", store=self.path) as service:
+            self.assertEqual(self.listed(service).keys(), old.keys())
+            for id, result in ended.items():
+                self.assertEqual(service.job(id)["result"], result)
 
     def test_one_that_was_killed_is_done_again(self):
         self.fill(DATA / "fourth_version.sql")

@@ -1,17 +1,21 @@
-"""Writes the wheel of the client for pip (PEP 517) with the standard library alone.
+"""Writes the wheel and the source archive of the client for pip (PEP 517) with the standard library alone.
 
 The module goes in as a package, because only packages can carry py.typed, which tells type checkers to use its
 annotations (PEP 561). Name, version and description are those of pyproject.toml.
 """
 
 import base64
+import gzip
 import hashlib
+import io
 import os
 import pathlib
 import re
+import tarfile
 import zipfile
 from typing import Any, Dict, Optional, Tuple
 
+SOURCES = ("README.md", "backend/wheel_backend.py", "pyproject.toml", "tunewright.py")
 HERE = pathlib.Path(__file__).resolve().parents[1]
 
 
@@ -23,14 +27,11 @@ def project() -> Dict[str, str]:
 
 def build_wheel(wheel_directory: str, config_settings: Optional[Dict[str, Any]] = None,
                 metadata_directory: Optional[str] = None) -> str:
-    about = project()
-    name = "%(name)s-%(version)s" % about
-    metadata = ("Metadata-Version: 2.1\nName: %(name)s\nVersion: %(version)s\nSummary: %(description)s\nLicense: MIT\n"
-                "Requires-Python: %(requires-python)s\nDescription-Content-Type: text/markdown\n\n" % about)
+    name = _name()
     files = {
         "tunewright/__init__.py": (HERE / "tunewright.py").read_bytes(),
         "tunewright/py.typed": b"",
-        name + ".dist-info/METADATA": metadata.encode() + (HERE / "README.md").read_bytes(),
+        name + ".dist-info/METADATA": _metadata(),
         name + ".dist-info/WHEEL": b"Wheel-Version: 1.0\nGenerator: tunewright\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
     }
     record = name + ".dist-info/RECORD"
@@ -40,6 +41,29 @@ def build_wheel(wheel_directory: str, config_settings: Optional[Dict[str, Any]] 
         for path, content in files.items():
             archive.writestr(zipfile.ZipInfo(path), content, zipfile.ZIP_DEFLATED)  # no date: equal wheels
     return wheel
+
+
+def build_sdist(sdist_directory: str, config_settings: Optional[Dict[str, Any]] = None) -> str:
+    name = _name()
+    archived = io.BytesIO()
+    with tarfile.open(fileobj=archived, mode="w", format=tarfile.PAX_FORMAT) as archive:
+        for path, content in [("PKG-INFO", _metadata()), *((path, (HERE / path).read_bytes()) for path in SOURCES)]:
+            entry = tarfile.TarInfo("%s/%s" % (name, path))  # no date and no owner: equal archives
+            entry.size = len(content)
+            archive.addfile(entry, io.BytesIO(content))
+    sdist = name + ".tar.gz"
+    pathlib.Path(sdist_directory, sdist).write_bytes(gzip.compress(archived.getvalue(), mtime=0))
+    return sdist
+
+
+def _name() -> str:
+    return "%(name)s-%(version)s" % project()
+
+
+def _metadata() -> bytes:
+    head = ("Metadata-Version: 2.1\nName: %(name)s\nVersion: %(version)s\nSummary: %(description)s\nLicense: MIT\n"
+            "Requires-Python: %(requires-python)s\nDescription-Content-Type: text/markdown\n\n" % project())
+    return head.encode() + (HERE / "README.md").read_bytes()
 
 
 def _row(file: Tuple[str, bytes]) -> str:

@@ -1,7 +1,7 @@
 """Writes the wheel of the client for pip (PEP 517) with the standard library alone.
 
-The module goes in as a package, because only packages can carry py.typed, which tells type checkers to use its
-annotations (PEP 561). Name, version and description are those of pyproject.toml.
+py.typed tells type checkers to use the package's annotations (PEP 561). Name, version and description are those of
+pyproject.toml.
 """
 
 import base64
@@ -28,7 +28,7 @@ def build_wheel(wheel_directory: str, config_settings: Optional[Dict[str, Any]] 
     metadata = ("Metadata-Version: 2.1\nName: %(name)s\nVersion: %(version)s\nSummary: %(description)s\nLicense: MIT\n"
                 "Requires-Python: %(requires-python)s\nDescription-Content-Type: text/markdown\n\n" % about)
     files = {
-        "tunewright/__init__.py": (HERE / "tunewright.py").read_bytes(),
+        **{"tunewright/" + path.name: path.read_bytes() for path in sorted((HERE / "tunewright").glob("*.py"))},
         "tunewright/py.typed": b"",
         name + ".dist-info/METADATA": metadata.encode() + (HERE / "README.md").read_bytes(),
         name + ".dist-info/WHEEL": b"Wheel-Version: 1.0\nGenerator: tunewright\nRoot-Is-Purelib: true\nTag: py3-none-any\n",

@@ -214,7 +214,8 @@ std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::o
                               : as_csv                          ? std::string()
                                                                 : words.record.time_unit;
     if (!unit.empty() && request.value("units", Json::object()).is_object()) request["units"]["time"] = unit;
-    if (words.baseline == "from-record") {
+    // "Kp Ti Td" has only numbers; anything with a bracket or an operator is a controller as text.
+    if (words.baseline == "from-record" || words.baseline.find_first_of("(=/*") != words.baseline.npos) {
         request["baseline"] = words.baseline;
     } else if (!words.baseline.empty()) {
         Json& today = request["baseline"] = {{"form", "ideal"}};

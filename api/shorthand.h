@@ -28,7 +28,7 @@ struct TuneWords {
     std::string plant;                 ///< the plant as `tunewright plant` reads it; "": it is in the file
     std::vector<std::string> methods;  ///< empty: those of the file, or the default
     std::string Ms;         ///< limit of Ms and Mt for robust and all; without either method, Ms of each; "": not given
-    std::string baseline;   ///< today's settings, "Kp Ti Td" or "from-record"; "": those of the file, or none
+    std::string baseline;   ///< today's settings: "Kp Ti Td", a text, "from-record"; "": those of the file, or none
     std::string Ku, Pu, K;  ///< instead of a plant and a file: the ultimate point, and optionally the static gain
     std::vector<std::string> set;  ///< "MEMBER=VALUE": any member of the request, after all others
     CsvRequest record;             ///< if the file is a recorded test; for a plant, its time_unit is that of all times

@@ -68,8 +68,10 @@ void add_tune_options(CLI::App& app, TuneCommand& command) {
     app.add_option("--Ms", command.words.Ms,
                    "Limit of Ms and of Mt, in (1, " + text(limits::kMaxMs) + "]; default " + text(limits::kDefaultMs))
         ->type_name("NUMBER");
-    app.add_option("--baseline", command.words.baseline,
-                   "Today's settings in the ideal form: \"Kp Ti Td\"; from-record: as a recorded test shows them")
+    app.add_option(
+           "--baseline", command.words.baseline,
+           "Today's settings in the ideal form: \"Kp Ti Td\"; as control software writes them: \"pidstd(1.5, 120, "
+           "20, 10)\"; from-record: as a recorded test shows them")
         ->type_name("TEXT");
     app.add_option("--set", command.words.set,
                    "Any other member of the request, such as evaluate.own_step.target=60; may be repeated")

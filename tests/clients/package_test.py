@@ -54,7 +54,11 @@ class PackageTest(unittest.TestCase):
         self.assertEqual(self.run_in_folder(self.python, "-c", "import tunewright; print(tunewright.Client.__name__)"),
                          "Client\n")
         kept = sorted(path.name for path in self.source.rglob("*") if "__pycache__" not in path.parts)
-        self.assertEqual(kept, ["README.md", "backend", "pyproject.toml", "tunewright.py", "wheel_backend.py"])
+        self.assertEqual(kept, ["README.md", "__init__.py", "answers.py", "backend", "client.py", "notebook.py",
+                                "pyproject.toml", "systems.py", "tables.py", "tunewright", "wheel_backend.py"])
+        files = re.findall(r"^  (tunewright/\S+\.py)$", shown, re.MULTILINE)
+        self.assertEqual(files, ["tunewright/%s.py" % name for name in ("__init__", "answers", "client", "notebook",
+                                                                       "systems", "tables")])
 
     def test_its_source_archive_installs_too_and_both_are_the_same_every_time(self):
         build = ("import sys; sys.path.insert(0, sys.argv[1]); import wheel_backend as backend; "
@@ -80,7 +84,7 @@ class PackageTest(unittest.TestCase):
 
     def test_its_types_are_strict_from_python_3_9_on(self):
         checked = ("/usr/bin/mypy", "--strict", "--cache-dir", os.path.join(self.folder.name, "cache"))
-        self.run_in_folder(*checked, "--python-version", "3.9", str(self.source / "tunewright.py"),
+        self.run_in_folder(*checked, "--python-version", "3.9", str(self.source / "tunewright"),
                            str(self.source / "backend" / "wheel_backend.py"))
         program = pathlib.Path(self.folder.name, "use.py")
         program.write_text(TYPED_USE)

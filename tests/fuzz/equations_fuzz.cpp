@@ -1,6 +1,6 @@
 // libFuzzer on a plant's texts: for any bytes, the result is either a printable error, or a plant with finite numbers.
-// Lines: output, dx/dt, dz/dt, a parameter. The same bytes are also read as a typed plant, whose text must be read
-// back.
+// Lines: output, dx/dt, dz/dt, a parameter. The same bytes are also read as a typed plant, whose texts must be read
+// back, and as a typed controller.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,9 +10,13 @@
 #include <iostream>
 #include <string>
 
+#include "api/contract/device/typed_controller.h"
+#include "engine/controller/product/catalogue.h"
 #include "engine/plant/nonlinear/lie_derivatives.h"
 #include "engine/plant/nonlinear/nonlinear_system.h"
+#include "engine/plant/typed/plant_snippets.h"
 #include "engine/plant/typed/typed_plant.h"
+#include "engine/plant/typed/words.h"
 
 namespace {
 
@@ -78,7 +82,17 @@ void read_as_typed(const std::string& text) {
     const auto typed = read_plant(text);
     if (!typed) return require(can_be_shown(typed.error().message), "a readable error", typed.error().message);
     const std::string written = plant_text(typed->plant);
-    require(read_plant(written).has_value(), "a text that is read back", written);
+    require(written.empty() || read_plant(written).has_value(), "a text that is read back", written);
+    for (const PlantSnippet& snippet : plant_snippets(typed->plant, "s"))
+        if (snippet.text.size() <= typed::kMaxLength &&
+            !(snippet.name.starts_with("Python") && dead_time(typed->plant) != 0))
+            require(read_plant(snippet.text).has_value(), "a program that is read back", snippet.text);
+}
+
+void read_as_controller(const std::string& text) {
+    const auto typed = api::read_controller(text);
+    if (!typed) return require(can_be_shown(typed.error().message), "a readable error", typed.error().message);
+    require(product::find(typed->product) != nullptr, "a known product", typed->product);
 }
 
 }  // namespace
@@ -86,6 +100,7 @@ void read_as_typed(const std::string& text) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string text(reinterpret_cast<const char*>(data), size);
     read_as_typed(text);
+    read_as_controller(text);
     const auto system = NonlinearSystem::make(plant_of(text));
     if (system)
         examine(*system);

@@ -1,7 +1,11 @@
 #include "api/contract/device/given_controller.h"
 
 #include "api/contract/controller.h"
+#include "api/contract/device/typed_controller.h"
+#include "api/contract/plant/typed.h"
 #include "api/contract/product/product.h"
+#include "api/csv/time_stamp.h"
+#include "engine/plant/typed/words.h"
 
 namespace tunewright::api {
 namespace {
@@ -52,11 +56,41 @@ GivenDevice TypedSettings::device(const std::optional<GivenDevice>& others) cons
     return on_device;
 }
 
+namespace {
+
+// The times of the text are in s, and those of the request must be too: a plant next to it may have no units.
+void read_text(const std::string& text, SentController& target, Reader& reader) {
+    if (seconds_per(reader.time_unit()) != 1)
+        return reader.fault("the controller is a text, whose times are in s, but units.time is " +
+                            shown(Json(reader.time_unit())) +
+                            ". Give the form ideal with times in that unit, or product and settings.");
+    auto typed = read_controller(text);
+    if (!typed) return reader.fault(as_sentence(typed.error().message));
+    TypedSettings& settings = target.typed.emplace();
+    settings.product = std::move(typed->product);
+    settings.settings = std::move(typed->settings);
+}
+
+Json text_schema(SchemaBook& book) {
+    Json schema{{"type", "string"}, {"title", "TypedController"}, {"maxLength", typed::kMaxLength}};
+    schema["description"] =
+        "A controller as control software writes it, with times in s: the call of a product's constructor, or a "
+        "transfer function of PID form.";
+    schema["examples"] = {"pidstd(1.5, 120, 20, 10)", "pid(1.5, 0.0125, 30, 2)",
+                          "LimPID(k=1.5, Ti=120, Td=20, Nd=10, wp=0.6)", "1.5 + 0.0125/s + 30*s/(2*s + 1)"};
+    book.components["TypedController"] = std::move(schema);
+    return {{"$ref", "#/components/schemas/TypedController"}};
+}
+
+}  // namespace
+
 Codec<SentController> sent_controller() {
     const auto law = one_of(controller_contract());
     Codec<SentController> codec;
     codec.read = [law](const Json& value, SentController& target, Reader& reader) {
-        if (value.is_object() && value.contains("product"))
+        if (value.is_string())
+            read_text(value.get_ref<const std::string&>(), target, reader);
+        else if (value.is_object() && value.contains("product"))
             object(typed_settings_contract()).read(value, target.typed.emplace(), reader);
         else
             maybe(law).read(value, target.law, reader);
@@ -66,7 +100,8 @@ Codec<SentController> sent_controller() {
         maybe(law).write(sent.law, out);
     };
     codec.schema = [law](SchemaBook& book) {
-        return Json{{"oneOf", Json::array({law.schema(book), typed_settings_contract().schema(book)})}};
+        return Json{
+            {"oneOf", Json::array({law.schema(book), typed_settings_contract().schema(book), text_schema(book)})}};
     };
     return codec;
 }

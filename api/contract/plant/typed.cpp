@@ -2,26 +2,28 @@
 #include "api/contract/plant/typed.h"
 
 #include "api/contract/plant/mathml.h"
+#include "api/contract/product/conversion.h"
 #include "api/contract/record.h"
 #include "api/csv/time_stamp.h"
+#include "engine/plant/typed/plant_snippets.h"
 #include "engine/plant/typed/typed_plant.h"
 #include "engine/plant/typed/words.h"
 
 namespace tunewright::api {
 namespace {
 
-std::string as_sentence(std::string message) {
-    if (!message.empty() && message[0] >= 'a' && message[0] <= 'z') message[0] = static_cast<char>(message[0] - 32);
-    return message;
-}
-
 Json text_schema(SchemaBook& book) {
     Json schema{{"type", "string"}, {"title", "TypedPlant"}, {"maxLength", typed::kMaxLength}};
     schema["description"] =
-        "A linear plant as typed: a formula in s, parameters by name, zeros and poles, or the call of a matrix "
-        "program. Numbers without a unit are in units.time.";
-    schema["examples"] = {"2 e^(-3s)/((10s+1)(2s+1))", "K=2 T=10 L=3", "zeros -1, poles -2 -3±4i, gain 5",
-                          "tf([2],[10 1],'InputDelay',3)", "K=2 T=10 min L=30 s"};
+        "A linear plant as typed: a formula in s, parameters by name, zeros and poles, or as MATLAB, Octave, "
+        "python-control, ControlSystems.jl or Modelica write it. Numbers without a unit are in units.time.";
+    schema["examples"] = {"2 e^(-3s)/((10s+1)(2s+1))",
+                          "K=2 T=10 L=3",
+                          "zeros -1, poles -2 -3±4i, gain 5",
+                          "tf([2],[10 1],'InputDelay',3)",
+                          "delay(3)*tf([2],[10,1])",
+                          "Modelica.Blocks.Continuous.FirstOrder(k=2, T=10)",
+                          "K=2 T=10 min L=30 s"};
     book.components["TypedPlant"] = std::move(schema);
     return {{"$ref", "#/components/schemas/TypedPlant"}};
 }
@@ -41,6 +43,11 @@ Codec<V> or_text(const Codec<V>& inner) {
 }
 
 }  // namespace
+
+std::string as_sentence(std::string message) {
+    if (!message.empty() && message[0] >= 'a' && message[0] <= 'z') message[0] = static_cast<char>(message[0] - 32);
+    return message;
+}
 
 std::optional<TypedPlant> read_typed_plant(const std::string& text, Reader& reader) {
     auto typed = read_plant(text, seconds_per(reader.time_unit()).value_or(0));
@@ -100,7 +107,23 @@ const Description<PlantQuestion>& plant_answer_contract() {
                 {}, no_plant)
             .field(
                 "text", {}, [](const PlantQuestion& question, Writer& out) { out.text(plant_text(*question.plant)); },
-                text_schema, "The plant as typed, with all digits; empty for a state space.", {}, no_plant)
+                text_schema,
+                "The plant as typed, with all digits; empty for a state space that is too large for a line.", {},
+                no_plant)
+            .field(
+                "snippets", {},
+                [](const PlantQuestion& question, Writer& out) {
+                    std::vector<product::FilledSnippet> texts;
+                    const std::string unit = question.units.value_or(Units{}).time_or_default();
+                    for (PlantSnippet& one : plant_snippets(*question.plant, unit))
+                        texts.push_back({one.name, std::move(one.text)});
+                    snippets().write(texts, out);
+                },
+                snippets().schema,
+                "The plant for MATLAB, python-control, ControlSystems.jl and Modelica, with times in units.time; each "
+                "can be sent as text in place of a plant. python-control has no dead time and gets a Pade "
+                "approximation.",
+                {}, no_plant)
             .field("fault", &PlantQuestion::fault, maybe(words()),
                    "Fault of an unfinished text; there are no other members then.");
         return d;

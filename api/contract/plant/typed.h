@@ -8,6 +8,9 @@
 
 namespace tunewright::api {
 
+/// The message of a text's reader as a sentence: it begins with a capital.
+std::string as_sentence(std::string message);
+
 /// Reads a text as a plant in the request's unit of time, which the reader knows; empty after a fault, which the reader
 /// then has.
 std::optional<TypedPlant> read_typed_plant(const std::string& text, Reader& reader);

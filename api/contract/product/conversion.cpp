@@ -1,7 +1,6 @@
 #include "api/contract/product/conversion.h"
 
 #include "api/contract/controller.h"
-#include "engine/controller/product/snippet.h"
 
 namespace tunewright::api {
 namespace {
@@ -60,13 +59,13 @@ const Description<product::FilledSnippet>& snippet_contract() {
     return contract;
 }
 
-Codec<std::vector<product::FilledSnippet>> snippets() { return list_of(answer(snippet_contract())); }
-
 Json texts_by_name(SchemaBook&) { return {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}; }
 
 Json controller_schema(SchemaBook& book) { return controller_contract().schema(book); }
 
 }  // namespace
+
+Codec<std::vector<product::FilledSnippet>> snippets() { return list_of(answer(snippet_contract())); }
 
 const Description<SettingsRequest>& settings_request_contract() {
     static const auto contract = [] {

@@ -11,6 +11,7 @@
 #include "api/contract/record.h"
 #include "api/describe/description.h"
 #include "engine/controller/pid.h"
+#include "engine/controller/product/snippet.h"
 
 namespace tunewright::api {
 
@@ -27,6 +28,9 @@ struct SettingsRequest : BlockContext {
     bool nearest = false;
 };
 const Description<SettingsRequest>& settings_request_contract();
+
+/// Texts to paste, [{"name", "text"}]: of settings, and of plants.
+Codec<std::vector<product::FilledSnippet>> snippets();
 
 /// The settings to type, also with an entry of a result.
 struct SettingsAnswer {

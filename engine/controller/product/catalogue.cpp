@@ -48,4 +48,25 @@ const Product* find(std::string_view id) {
     return found == all.end() ? nullptr : &*found;
 }
 
+// The order of the inputs is that of the makers' documents, which the catalogue names as sources.
+const std::vector<Constructor>& constructors() {
+    static const std::vector<Constructor> all{
+        {.product = "matlab_pid", .function = "pid", .inputs = {"Kp", "Ki", "Kd", "Tf"}},
+        {.product = "matlab_pidstd", .function = "pidstd", .inputs = {"Kp", "Ti", "Td", "N"}},
+        {.product = "matlab_pid2", .function = "pid2", .inputs = {"Kp", "Ki", "Kd", "Tf", "b", "c"}},
+        {.product = "matlab_pidstd2", .function = "pidstd2", .inputs = {"Kp", "Ti", "Td", "N", "b", "c"}},
+        {.product = "controlsystems_jl_pid",
+         .function = "pid",
+         .inputs = {"param_p", "param_i", "param_d"},
+         .required = 2},
+        {.product = "discretepids_jl", .function = "DiscretePID", .required = 0, .outside = {"umin", "umax"}},
+        {.product = "modelica_limpid",
+         .function = "LimPID",
+         .required = 0,
+         .outside = {"yMax", "yMin", "Ni", "initType", "xi_start", "xd_start", "y_start", "homotopyType", "strict",
+                     "limitsAtInit"}},
+    };
+    return all;
+}
+
 }  // namespace tunewright::product

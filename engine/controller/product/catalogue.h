@@ -1,6 +1,7 @@
 // The products whose settings can be converted: one table in catalogue/, with a source file for each maker or group.
 #pragma once
 
+#include <cstddef>
 #include <string_view>
 #include <vector>
 
@@ -34,5 +35,18 @@ std::vector<Product> printer_products();
 std::vector<Product> thermostat_products();
 std::vector<Product> kiln_and_brewery_products();
 std::vector<Product> flight_products();
+
+/// A call that makes a product's controller in its own language, so that such a text can be read.
+struct Constructor {
+    std::string_view product = "";              ///< id in the catalogue
+    std::string_view function = "";             ///< as it is written
+    std::vector<std::string_view> inputs = {};  ///< names of the parameters in the order of the call
+    std::size_t required = 1;                   ///< inputs that every call has
+    /// Named arguments that do not change the linear law, such as limits of the output.
+    std::vector<std::string_view> outside = {};
+};
+
+/// Of all products that have one.
+const std::vector<Constructor>& constructors();
 
 }  // namespace tunewright::product

@@ -3,112 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <utility>
 
 #include "engine/number_text.h"
 #include "engine/plant/expression/tokens.h"
-#include "engine/plant/linear/factor.h"
+#include "engine/plant/typed/plant_calls.h"
 #include "engine/plant/typed/readings.h"
 
 namespace tunewright::typed {
 namespace {
 
-bool is_polynomial_call(const std::string& name) { return name == "tf" || name == "transferfunction"; }
-bool is_root_call(const std::string& name) { return name == "zpk" || name == "zerospolesgain"; }
-bool is_delay_word(const std::string& name) {
-    return name == "inputdelay" || name == "outputdelay" || name == "iodelay" || name == "delay";
-}
-
-void read_separator(Cursor& cursor) {
-    if (!cursor.failed() && !cursor.skip(",")) cursor.unexpected("\",\" and the next argument");
-}
-
-/// Reads the part after the last argument, up to the closing bracket: nothing or a delay.
-double read_delay_and_end(Cursor& cursor, const Word& opened) {
-    double L = 0;
-    while (!cursor.failed() && cursor.skip(",")) {
-        const Word word = cursor.now();
-        const bool named = word.kind == Word::Kind::quoted || word.kind == Word::Kind::name;
-        if (!named || !is_delay_word(lower(word.text))) {
-            cursor.fail(word.position, word.kind == Word::Kind::number
-                                           ? "another number would be a sample time, but the plant must be in "
-                                             "continuous time."
-                                           : "only 'InputDelay' with its value is known here.");
-            return 0;
-        }
-        cursor.advance();
-        if (!cursor.skip("=")) read_separator(cursor);
-        L += read_value(cursor, Commas::separate);
-    }
-    if (cursor.failed()) return 0;
-    if (!cursor.at(closing(opened))) {
-        cursor.unexpected(std::string("\"") + closing(opened) + "\"");
-        return 0;
-    }
-    cursor.close();
-    cursor.advance();
-    return L;
-}
-
-Formula refused(Cursor& cursor, int position, const std::string& what) {
-    cursor.fail(position, what);
-    return {};
-}
-
 std::string order_fault() { return "the order is above " + std::to_string(kMaxOrder) + "."; }
-
-Formula polynomial_call(Cursor& cursor, const Word& opened) {
-    const int position = cursor.now().position;
-    std::vector<double> top = read_coefficients(cursor);
-    read_separator(cursor);
-    const int below = cursor.now().position;
-    std::vector<double> bottom = read_coefficients(cursor);
-    const double L = read_delay_and_end(cursor, opened);
-    if (cursor.failed()) return {};
-    if (std::max(top.size(), bottom.size()) > kMaxOrder + 1) return refused(cursor, position, order_fault());
-    const Formula den = of_polynomial(std::move(bottom));
-    if (den.gain == 0) return refused(cursor, below, "the denominator is 0.");
-    Formula out = quotient(of_polynomial(std::move(top)), den);
-    out.L = L;
-    return out;
-}
-
-Formula root_call(Cursor& cursor, const Word& opened) {
-    const int position = cursor.now().position;
-    Zpk plant;
-    plant.zeros = read_roots(cursor, Commas::separate);
-    read_separator(cursor);
-    plant.poles = read_roots(cursor, Commas::separate);
-    read_separator(cursor);
-    plant.K = cursor.failed() ? 0 : read_value(cursor, Commas::separate);
-    plant.L = read_delay_and_end(cursor, opened);
-    if (cursor.failed()) return {};
-    if (std::max(plant.zeros.size(), plant.poles.size()) > kMaxOrder) return refused(cursor, position, order_fault());
-    const std::vector<Error> faults = plant_faults(plant);
-    if (!faults.empty()) return refused(cursor, position, faults.front().message);
-    return *formula_of(plant);
-}
-
-/// True if a name in lower case is one of the calls: tf, zpk or a synonym.
-bool is_matrix_call(const std::string& name) { return is_polynomial_call(name) || is_root_call(name); }
-
-/// Reads the call whose name is at the cursor, followed by a bracket. Lists are written [1 2], [1, 2] or [1; 2]; the
-/// delay may also be written InputDelay=L.
-Formula read_matrix_call(Cursor& cursor) {
-    const std::string name = lower(cursor.now().text);
-    cursor.advance();
-    const Word opened = cursor.now();
-    cursor.open(opened);
-    cursor.advance();
-    return is_polynomial_call(name) ? polynomial_call(cursor, opened) : root_call(cursor, opened);
-}
 
 constexpr int kMaxDepth = 30;
 
 class FormulaParser {
 public:
-    FormulaParser(Cursor& cursor, double own_time) : cursor_(cursor), own_time_(own_time) {}
+    FormulaParser(Cursor& cursor, const Names& names, double own_time)
+        : cursor_(cursor), names_(names), own_time_(own_time) {}
 
     Formula read() {
         Formula formula = sum();
@@ -291,7 +204,8 @@ private:
         }
         const double value = read_number(cursor_, Commas::decimal);
         if (cursor_.failed()) return {};
-        const auto unit = cursor_.at_name() ? seconds_of_unit(cursor_.now().text) : std::nullopt;
+        const bool unit_of_time = cursor_.at_name() && !names_.contains(cursor_.now().text);
+        const auto unit = unit_of_time ? seconds_of_unit(cursor_.now().text) : std::nullopt;
         return unit ? number_with_unit(value, *unit) : Formula{.gain = value};
     }
 
@@ -318,21 +232,37 @@ private:
     Formula name() {
         const Word word = cursor_.now();
         const std::string spelt = lower(word.text);
+        if (const auto named = names_.find(word.text); named != names_.end()) return value_of(word, named->second);
         if (word.text == "s" || word.text == "S") {
             cursor_.advance();
             return {.gain = 1, .num = {{1, 0}}};
         }
         if (at_dead_time()) return dead_time();
         if (word.text == "\\frac") return fraction();
-        if (opens(cursor_.peek(1)) && is_matrix_call(spelt)) return read_matrix_call(cursor_);
+        if (at_call(cursor_) && is_formula_function(spelt)) {
+            const Call call = read_call(cursor_, names_);
+            return formula_of_call(call, cursor_);
+        }
+        if (word.text == "pi") return cursor_.advance(), Formula{.gain = std::numbers::pi};
         refuse_name(word);
+        return {};
+    }
+
+    Formula value_of(const Word& word, const NamedValue& value) {
+        cursor_.advance();
+        if (value.formula) return *value.formula;
+        const Matrix& list = value.matrix ? *value.matrix : Matrix{{}};
+        if (list.size() == 1 && list[0].size() == 1 && list[0][0].imag() == 0) return {.gain = list[0][0].real()};
+        cursor_.fail(word.position, quoted(word.text) + " is a list or a state space, not a factor of a formula.");
         return {};
     }
 
     void refuse_name(const Word& word) {
         const std::string name = quoted(word.text);
-        if (lower(word.text) == "ss" || lower(word.text) == "statespace")
-            return cursor_.fail(word.position, "give a state space by its matrices, as a plant of type state_space.");
+        if (is_state_space_function(lower(word.text)))
+            return cursor_.fail(word.position,
+                                "a state space can only be multiplied by numbers and dead times here, as in "
+                                "exp(-3*s)*ss(A,B,C,D).");
         if (word.text == "e") return cursor_.fail(word.position, "e is only allowed in a dead time, as in e^(-3s).");
         if (word.text == "p" || word.text == "z" || word.text == "q")
             return cursor_.fail(word.position, name + " is not a variable here; write s, in continuous time.");
@@ -340,6 +270,7 @@ private:
             return cursor_.fail(word.position, name +
                                                    " is a unit of time; write it after its number, as in (10 min s + "
                                                    "1).");
+        if (Cursor::is(cursor_.peek(1), "(")) return refuse_call(word, cursor_);
         cursor_.fail(word.position, name +
                                         " is unknown; a formula has numbers, s and e^(-3s). Write its value "
                                         "instead.");
@@ -400,12 +331,15 @@ private:
     }
 
     Cursor& cursor_;
+    const Names& names_;
     double own_time_;
     int depth_ = 0;
 };
 
 }  // namespace
 
-Formula read_formula(Cursor& cursor, double own_time) { return FormulaParser(cursor, own_time).read(); }
+Formula read_formula(Cursor& cursor, const Names& names, double own_time) {
+    return FormulaParser(cursor, names, own_time).read();
+}
 
 }  // namespace tunewright::typed

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/plant/typed/formula.h"
+#include "engine/plant/typed/lists.h"
 #include "engine/plant/typed/words.h"
 
 namespace tunewright::typed {
@@ -15,12 +16,12 @@ namespace tunewright::typed {
 ///   signed:   ["+" | "-"] factor
 ///   factor:   primary [ "^" whole number ]
 ///   primary:  number [unit of time "s"] | "s" | e^... | exp( sum ) | call
-///             | "(" sum ")" and { } [ ] | \frac{ sum }{ sum }
+///             | "(" sum ")" and { } [ ] | \frac{ sum }{ sum } | the name of a value
 ///
-///   call:     tf(num, den [, 'InputDelay', L]) | zpk(zeros, poles, gain [, ...]) and their names in Python
+///   call:     of a function in plant_calls.h
 ///
 /// e^-3s needs no brackets: its exponent extends to the next sign. After a division a factor without an operator is
 /// refused, because some read 1/2s as 1/(2s) and others as s/2; a dead time is allowed.
-Formula read_formula(Cursor& cursor, double own_time);
+Formula read_formula(Cursor& cursor, const Names& names, double own_time);
 
 }  // namespace tunewright::typed

@@ -100,7 +100,7 @@ private:
             cursor_.advance();
             list.emplace();
         } else {
-            list = read_roots(cursor_, Commas::refused);
+            list = read_roots(cursor_);
         }
     }
 
@@ -262,10 +262,17 @@ bool names_a_formula(const Cursor& cursor) {
     return Cursor::is(cursor.peek(at), "(");
 }
 
+/// True for Modelica's Integrator(k=2) and Gain(k=2).
+bool is_block(const Cursor& cursor) {
+    const std::size_t at = cursor.peek(1).kind == Word::Kind::name ? 2 : 1;
+    return !cursor.now().prefix.empty() || (Cursor::is(cursor.peek(at), "(") && is_name(cursor.peek(at + 1), "k") &&
+                                            Cursor::is(cursor.peek(at + 2), "="));
+}
+
 }  // namespace
 
 bool is_parameter_text(const Cursor& cursor) {
-    if (!cursor.at_name() || names_a_formula(cursor)) return false;
+    if (!cursor.at_name() || names_a_formula(cursor) || is_block(cursor)) return false;
     if (kind_of(cursor.now())) return true;
     bool both = false;
     const std::string name = meaning(cursor.now(), cursor.peek(1), both);

@@ -175,14 +175,11 @@ double read_value(Cursor& cursor, Commas commas) {
     return value;
 }
 
-std::vector<std::complex<double>> read_roots(Cursor& cursor, Commas commas) {
+std::vector<std::complex<double>> read_roots(Cursor& cursor) {
     std::vector<std::complex<double>> roots;
     const Word bracket = cursor.now();
     if (!cursor.at("[")) {
-        if (commas == Commas::separate)
-            read_root(cursor, commas, roots);
-        else
-            read_root_list(cursor, commas, roots);
+        read_root_list(cursor, Commas::refused, roots);
         return roots;
     }
     cursor.open(bracket);
@@ -195,26 +192,6 @@ std::vector<std::complex<double>> read_roots(Cursor& cursor, Commas commas) {
         cursor.advance();
     }
     return roots;
-}
-
-std::vector<double> read_coefficients(Cursor& cursor) {
-    std::vector<double> out;
-    const Word bracket = cursor.now();
-    if (!cursor.at("[")) {
-        out.push_back(read_value(cursor, Commas::separate));
-        return out;
-    }
-    cursor.open(bracket);
-    cursor.advance();
-    while (!cursor.failed() && !cursor.at("]")) {
-        out.push_back(read_value(cursor, Commas::separate));
-        if (!cursor.skip(",")) cursor.skip(";");
-    }
-    if (!cursor.failed()) {
-        cursor.close();
-        cursor.advance();
-    }
-    return out;
 }
 
 }  // namespace tunewright::typed

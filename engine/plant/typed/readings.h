@@ -30,9 +30,8 @@ double read_number(Cursor& cursor, Commas commas);
 double read_value(Cursor& cursor, Commas commas);
 
 /// Numbers or complex roots up to what cannot be one: -1, -3+4i, -3±4j for a pair. A sign that follows a blank and is
-/// not followed by one begins a new root, as in matrix programs. With `commas` separate the list is in [ ] or is one
-/// number.
-std::vector<std::complex<double>> read_roots(Cursor& cursor, Commas commas);
-std::vector<double> read_coefficients(Cursor& cursor);
+/// not followed by one begins a new root, as in matrix programs. In [ ] a comma separates two of them; without brackets
+/// 1,2 is refused.
+std::vector<std::complex<double>> read_roots(Cursor& cursor);
 
 }  // namespace tunewright::typed

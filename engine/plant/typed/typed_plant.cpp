@@ -5,28 +5,14 @@
 
 #include "engine/number_text.h"
 #include "engine/plant/linear/factor.h"
-#include "engine/plant/typed/formula_parser.h"
 #include "engine/plant/typed/parameter_parser.h"
+#include "engine/plant/typed/program.h"
 #include "engine/plant/typed/words.h"
 
 namespace tunewright {
 namespace {
 
 using namespace typed;
-
-// Skips "P(s) =", "G ="; and "s = tf('s');", with which programs begin.
-void skip_name(Cursor& cursor) {
-    if (cursor.at_name() && cursor.now().text == "s" && Cursor::is(cursor.peek(1), "=")) {
-        while (!cursor.at_end() && !cursor.at(";")) cursor.advance();
-        cursor.advance();
-    }
-    if (!cursor.at_name()) return;
-    const bool of_s = Cursor::is(cursor.peek(1), "(") && cursor.peek(2).text == "s" && Cursor::is(cursor.peek(3), ")");
-    const std::size_t length = of_s ? 4 : 1;
-    const bool parameters = !of_s && is_parameter_text(cursor);
-    if (parameters || !Cursor::is(cursor.peek(length), "=")) return;
-    for (std::size_t i = 0; i <= length; ++i) cursor.advance();
-}
 
 Expected<TypedPlant> of_parameters(Cursor& cursor, double own_time) {
     Plant plant = read_parameters(cursor, own_time);
@@ -38,9 +24,15 @@ Expected<TypedPlant> of_parameters(Cursor& cursor, double own_time) {
     return TypedPlant{std::move(plant), *std::move(formula)};
 }
 
-Expected<TypedPlant> of_formula(Cursor& cursor, double own_time) {
-    Formula formula = read_formula(cursor, own_time);
-    if (cursor.failed()) return cursor.fault();
+Expected<TypedPlant> of_program(const std::vector<Statement>& statements, double own_time) {
+    auto value = read_program(statements, own_time);
+    if (!value) return value.error();
+    if (auto* states = std::get_if<StateSpace>(&*value)) {
+        const std::vector<Error> faults = plant_faults(*states);
+        if (!faults.empty()) return Error{ErrorKind::invalid_argument, "", faults.front().message};
+        return TypedPlant{std::move(*states), std::nullopt};
+    }
+    Formula& formula = std::get<Formula>(*value);
     auto plant = plant_of(formula);
     if (!plant) return plant.error();
     const std::vector<Error> faults = plant_faults(*plant);
@@ -127,20 +119,37 @@ std::string text_of(const Zpk& p) {
            (p.L == 0 ? "" : ", delay " + as_typed(p.L));
 }
 
-std::string text_of(const StateSpace&) { return ""; }
+/// All digits: a state space may be a small difference of large numbers.
+std::string row_text(const std::vector<double>& row) {
+    std::string out;
+    for (const double x : row) out += (out.empty() ? "" : " ") + exact_text(x);
+    return out;
+}
+
+std::string text_of(const StateSpace& p) {
+    std::string A, B;
+    for (const auto& row : p.A) A += (A.empty() ? "" : "; ") + row_text(row);
+    for (const double x : p.B) B += (B.empty() ? "" : "; ") + exact_text(x);
+    const std::string out = "ss([" + A + "], [" + B + "], [" + row_text(p.C) + "], " + exact_text(p.D) +
+                            (p.L == 0 ? "" : ", 'InputDelay', " + exact_text(p.L)) + ")";
+    return out.size() > kMaxLength ? "" : out;
+}
 
 }  // namespace
 
 Expected<TypedPlant> read_plant(std::string_view text, double seconds_per_time) {
     auto words = words_of(text);
     if (!words) return words.error();
-    Cursor cursor(*std::move(words));
-    skip_name(cursor);
-    if (cursor.at_end())
+    const std::vector<Statement> statements = statements_of(*words);
+    if (statements.empty())
         return Error{ErrorKind::invalid_argument, "",
                      "the text is empty; write a plant such as 2 e^(-3s)/(10s+1), K=2 T=10 L=3, or poles -1 -2, gain "
                      "3."};
-    return is_parameter_text(cursor) ? of_parameters(cursor, seconds_per_time) : of_formula(cursor, seconds_per_time);
+    Cursor whole(*std::move(words));
+    if (is_parameter_text(whole) && !is_program(statements)) return of_parameters(whole, seconds_per_time);
+    Cursor value(value_of(statements[0]));
+    if (statements.size() == 1 && is_parameter_text(value)) return of_parameters(value, seconds_per_time);
+    return of_program(statements, seconds_per_time);
 }
 
 std::string plant_text(const Plant& plant) {

@@ -65,8 +65,8 @@ private:
     }
 
     void add(Kind kind, std::string text, int position, double number = 0) {
-        words_.push_back({kind, std::move(text), number, position, blank_});
-        blank_ = false;
+        words_.push_back({kind, std::move(text), number, position, blank_, line_});
+        blank_ = line_ = false;
     }
 
     void add_symbol(std::string text, std::size_t bytes) {
@@ -78,11 +78,15 @@ private:
         const char c = rest()[0];
         if (c == ' ' || c == '\t' || c == '\n' || c == '\r') {
             blank_ = true;
+            line_ |= c == '\n' || c == '\r';
             return take(1);
         }
+        if (begins_comment()) return take(std::min(rest().find_first_of("\r\n"), rest().size()));
+        if (rest().starts_with("...")) return take(3);  // MATLAB: the statement continues in the next line
         if (is_digit(c) || (c == '.' && rest().size() > 1 && is_digit(rest()[1]))) return number();
         if (is_letter(c) || c == '\\' || spelling_at(kLetters, rest())) return name();
         if (spelling_at(kSuperscripts, rest())) return superscripts();
+        if (c == '\'' && !blank_ && !words_.empty() && Cursor::is(words_.back(), "]")) return add_symbol("'", 1);
         if (c == '\'' || c == '"') return quoted_word();
         if (rest().starts_with("**")) return add_symbol("^", 2);
         if (rest().starts_with("+-") && rest().size() > 2 && (is_digit(rest()[2]) || rest()[2] == '.'))
@@ -92,6 +96,13 @@ private:
             return add_symbol(std::string(1, c), 1);
         fault_ = fault_at(position_, quoted(rest().substr(0, length_of_character(rest()))) +
                                          " has no meaning in a plant; write for example 2 e^(-3s)/(10s+1).");
+    }
+
+    /// A sign of percent elsewhere may be a unit: it is refused.
+    bool begins_comment() const {
+        if (rest()[0] == '#') return true;
+        const bool at_statement = words_.empty() || line_ || Cursor::is(words_.back(), ";");
+        return at_statement && (rest()[0] == '%' || rest().starts_with("//"));
     }
 
     void foreign_sign(const Spelling& sign) {
@@ -116,16 +127,16 @@ private:
         take(length);
     }
 
-    // A dot joins names, as in control.tf; only the last one is used.
+    // A dot joins names, as in control.tf; the last one is the word.
     void name() {
         const int position = position_;
-        std::string name;
+        std::string name, prefix;
         while (at_ < text_.size()) {
             const char c = rest()[0];
             const Spelling* letter = spelling_at(kLetters, rest());
             const bool joins = c == '.' && !name.empty() && rest().size() > 1 && is_letter(rest()[1]);
             if (joins) {
-                name.clear();
+                prefix = std::exchange(name, "");
             } else if (letter) {
                 name += letter->meant;
             } else if (is_letter(c) || c == '\\' || (is_digit(c) && !name.empty())) {
@@ -137,6 +148,7 @@ private:
         }
         if (name == "\\cdot" || name == "\\times") return add(Kind::symbol, "*", position);
         add(Kind::name, std::move(name), position);
+        words_.back().prefix = std::move(prefix);
     }
 
     void superscripts() {
@@ -184,7 +196,7 @@ private:
     std::string_view text_;
     std::size_t at_ = 0;
     int position_ = 1;
-    bool blank_ = false;
+    bool blank_ = false, line_ = false;
     std::vector<Word> words_;
     std::optional<Error> fault_;
 };
@@ -229,6 +241,10 @@ void Cursor::unexpected(const std::string& wanted) {
 }
 
 bool opens(const Word& word) { return Cursor::is(word, "(") || Cursor::is(word, "[") || Cursor::is(word, "{"); }
+
+bool closes(const Word& word) { return Cursor::is(word, ")") || Cursor::is(word, "]") || Cursor::is(word, "}"); }
+
+bool is_name(const Word& word, std::string_view name) { return word.kind == Kind::name && word.text == name; }
 
 const char* closing(const Word& bracket) { return bracket.text == "(" ? ")" : bracket.text == "[" ? "]" : "}"; }
 

@@ -19,10 +19,14 @@ struct Word {
     double number = 0;         ///< value of a number
     int position = 1;          ///< position of its first character, from 1
     bool after_blank = false;  ///< white space precedes it
+    bool after_line = false;   ///< a line break precedes it
+    std::string prefix = {};   ///< of a name with dots, the name before the last dot: y of a.y has a
 };
 
 /// The words of the text; the last is of kind `end`. Minus signs and dots of every alphabet, ** and superscripts are
-/// converted: s² becomes s ^ ( 2 ). Errors: too long, not valid UTF-8, an unknown character, or a number out of range.
+/// converted: s² becomes s ^ ( 2 ). Comments of programs are left out: # up to the end of the line, % and // where a
+/// statement could begin. A ' after ] is the symbol of a transpose. Errors: too long, not valid UTF-8, an unknown
+/// character, or a number out of range.
 Expected<std::vector<Word>> words_of(std::string_view text);
 
 /// invalid_argument with "position 7: <what>".
@@ -63,9 +67,13 @@ private:
     std::optional<Error> fault_;
 };
 
+/// True for the name `name`.
+bool is_name(const Word& word, std::string_view name);
+
 /// True for an opening bracket of any kind, and the bracket that closes it.
 bool opens(const Word& word);
 const char* closing(const Word& bracket);
+bool closes(const Word& word);
 
 /// The word in lower case, because "InputDelay" and "FOPDT" have several spellings.
 std::string lower(std::string_view name);

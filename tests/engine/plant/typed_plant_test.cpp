@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-#include "engine/plant/linear/linear_plant.h"
+#include "tests/engine/plant/random_plants.h"
 
 namespace tunewright {
 namespace {
@@ -162,62 +162,6 @@ TEST(TypedPlant, WhatMayMeanTwoThingsIsRefused) {
     EXPECT_EQ(read_as("0,125/(10s+1)"), read_as("0.125/(10s+1)"));
 }
 
-/// max |P1 - P2|/|P1| over frequencies around the plants' own.
-double distance(const Plant& a, const Plant& b) {
-    const auto p = LinearPlant::make(a), q = LinearPlant::make(b);
-    if (!p || !q) return INFINITY;
-    double worst = 0;
-    for (double omega = 1e-4; omega < 1e3; omega *= 1.7) {
-        const Complex one = p->at(Complex(0, omega)), other = q->at(Complex(0, omega));
-        worst = std::max(worst, std::abs(one - other) / std::abs(one));
-    }
-    return worst;
-}
-
-class RandomPlants {
-public:
-    Plant next() {
-        const double K = signed_value(), L = chance(0.3) ? 0 : value();
-        switch (std::uniform_int_distribution(0, 6)(random_)) {
-            case 0: return Fopdt{.K = K, .T = signed_value(), .L = L};
-            case 1: return Sopdt{.K = K, .T1 = signed_value(), .T2 = chance(0.1) ? 0 : value(), .L = L};
-            case 2: return OscillatorySopdt{.K = K, .T = value(), .zeta = signed_value(), .L = L};
-            case 3: return Ipdt{.K = K, .L = L, .T = chance(0.5) ? 0 : value()};
-            case 4: return TransferFunction{.num = list(3), .den = list(5), .L = L};
-            case 5: return Zpk{.K = K, .zeros = roots(1), .poles = roots(3), .L = L};
-            default: return Fopdt{.K = K, .T = 0, .L = L};
-        }
-    }
-
-private:
-    bool chance(double p) { return std::bernoulli_distribution(p)(random_); }
-    double value() {
-        const double x = std::pow(10, std::uniform_real_distribution(-3.0, 3.0)(random_));
-        return chance(0.5) ? std::round(x * 1000) / 1000 + 0.001 : x;
-    }
-    double signed_value() { return chance(0.3) ? -value() : value(); }
-    std::vector<double> list(int size) {
-        std::vector<double> out;
-        for (int i = 0; i < size; ++i) out.push_back(i > 0 && chance(0.2) ? 0 : signed_value());
-        return out;
-    }
-    std::vector<Complex> roots(int pairs) {
-        std::vector<Complex> out;
-        for (int i = 0; i < pairs; ++i) {
-            const double re = signed_value(), im = value();
-            if (chance(0.5)) {
-                out.emplace_back(re);
-            } else {
-                out.emplace_back(re, im);
-                out.emplace_back(re, -im);
-            }
-        }
-        if (out.size() < 2) return out;
-        return out;
-    }
-    std::mt19937 random_{1};
-};
-
 TEST(TypedPlant, EveryPlantsTextIsReadBackAsIt) {
     RandomPlants plants;
     int same_type = 0, tried = 0;
@@ -232,7 +176,9 @@ TEST(TypedPlant, EveryPlantsTextIsReadBackAsIt) {
         // A text that is read is written unchanged, except for the order of two lags and for gains inside a fraction.
         same_type += plant_text(back->plant) == text;
         // The displayed formula represents the same plant.
-        const auto shown = typed::plant_of(back->formula);
+        if (std::holds_alternative<StateSpace>(plant)) continue;
+        ASSERT_TRUE(back->formula) << text;
+        const auto shown = typed::plant_of(*back->formula);
         ASSERT_TRUE(shown) << text;
         EXPECT_LT(distance(plant, *shown), 1e-6) << text;
     }
@@ -242,17 +188,76 @@ TEST(TypedPlant, EveryPlantsTextIsReadBackAsIt) {
 
 // Pieces of the grammar in any order: a valid plant, or a printable fault.
 TEST(TypedPlant, AnyTextIsReadOrRefused) {
-    constexpr const char* kPieces[] = {
-        "2",    "s",      "(",          ")",   "[",    "]",   "+",     "-",    "*",       "/", "^",  "e^",
-        "exp(", "10",     ",",          ";",   "=",    "K",   "T",     "L=3",  "zeta",    "±", "i",  "min",
-        " ",    "poles ", "²",          "tf(", "zpk(", "'x'", "zeros", "\xC3", "\\frac{", "}", "1e", "e5",
-        "0",    ".",      "InputDelay", "µs",  "2,5",  "s+1", "fopdt", "w0=",  "gain "};
+    constexpr const char* kPieces[] = {"2",
+                                       "s",
+                                       "(",
+                                       ")",
+                                       "[",
+                                       "]",
+                                       "+",
+                                       "-",
+                                       "*",
+                                       "/",
+                                       "^",
+                                       "e^",
+                                       "exp(",
+                                       "10",
+                                       ",",
+                                       ";",
+                                       "=",
+                                       "K",
+                                       "T",
+                                       "L=3",
+                                       "zeta",
+                                       "±",
+                                       "i",
+                                       "min",
+                                       " ",
+                                       "poles ",
+                                       "²",
+                                       "tf(",
+                                       "zpk(",
+                                       "'x'",
+                                       "zeros",
+                                       "\xC3",
+                                       "\\frac{",
+                                       "}",
+                                       "1e",
+                                       "e5",
+                                       "0",
+                                       ".",
+                                       "InputDelay",
+                                       "µs",
+                                       "2,5",
+                                       "s+1",
+                                       "fopdt",
+                                       "w0=",
+                                       "gain ",
+                                       "\n",
+                                       "ss(",
+                                       "{",
+                                       "'",
+                                       "# ",
+                                       "a.y",
+                                       "G = ",
+                                       "delay(",
+                                       "connect(",
+                                       "conv(",
+                                       "4im",
+                                       "%",
+                                       "s = tf('s');",
+                                       "FirstOrder p(k=2,T=3);",
+                                       "equation",
+                                       "Inf",
+                                       "dt=",
+                                       "import x"};
     std::mt19937 random(7);
     std::uniform_int_distribution<std::size_t> piece(0, std::size(kPieces) - 1), length(1, 14);
     int plants = 0;
     for (int i = 0; i < 200000; ++i) {
         std::string text;
         for (std::size_t n = length(random); n > 0; --n) text += kPieces[piece(random)];
+        SCOPED_TRACE(text);
         const auto read = read_plant(text);
         if (!read) {
             ASSERT_FALSE(read.error().message.empty()) << text;

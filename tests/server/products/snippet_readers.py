@@ -344,6 +344,26 @@ def julia(text):
     return found
 
 
+# Modelica: one declaration of the block LimPID; its parameters are those of the Modelica Standard Library.
+
+LIM_PID = dict.fromkeys(("k", "Ti", "Td", "Nd", "wp", "wd", "Ni", "yMin"), NUMBER) | {
+    "controllerType": r"Modelica\.Blocks\.Types\.SimpleController\.(?:P|PI|PD|PID)",
+    "yMax": rf"{NUMBER}|Modelica\.Constants\.inf"}
+
+
+def lim_pid(text):
+    match = re.fullmatch(r"Modelica\.Blocks\.Continuous\.LimPID controller\(([^()]*)\);", text)
+    require(match, "not a declaration of LimPID")
+    found = {}
+    for argument in match[1].split(", "):
+        name, equals, value = argument.partition("=")
+        require(equals and name in LIM_PID, f"LimPID has no {argument}")
+        require(re.fullmatch(LIM_PID[name], value), f"{value} is not a value of {name}")
+        added(found, name, value.rsplit("SimpleController.", 1)[-1])
+    require("yMax" in found, "yMax has no default")
+    return found
+
+
 # Arduino: compiled with the published declarations of the libraries and run, which prints each call.
 
 def sketch(number, calls):

@@ -1,7 +1,7 @@
 """Each text to paste: its reader, and the setting that each name in it must hold."""
 
 from snippet_readers import (BIT, BOOL, NUMBER, PLACES, REAL, TIME, epics_database, g_code, ioc_shell, julia,
-                             klipper, lines_of, matlab_controller, octave_control, python_control,
+                             klipper, lim_pid, lines_of, matlab_controller, octave_control, python_control,
                              python_settings, set_param, simple_pid, sketch, structured_text, yaml_text)
 
 PERIOD_S = 0.25
@@ -91,6 +91,13 @@ SNIPPETS = {
     "matlab_pidstd": [(matlab_controller("pidstd", ("Kp", "Ti", "Td", "N")),
                        same_names("Kp", "Ti", "Td") | {"N": of("N", "Inf")})],
     "matlab_pid": [(matlab_controller("pid", ("Kp", "Ki", "Kd", "Tf")), GAINS | {"Tf": of("Tf", "0")})],
+    "matlab_pidstd2": [(matlab_controller("pidstd2", ("Kp", "Ti", "Td", "N", "b", "c")),
+                        same_names("Kp", "Ti", "Td", "b") | {"N": of("N", "Inf"), "c": of("c", "0")})],
+    "matlab_pid2": [(matlab_controller("pid2", ("Kp", "Ki", "Kd", "Tf", "b", "c")),
+                     GAINS | same_names("b") | {"Tf": of("Tf", "0"), "c": of("c", "0")})],
+    "modelica_limpid": [(lim_pid, same_names("controllerType", "k", "wp") | {
+        "Ti": of("Ti", "0.5"), "Td": of("Td", "0.1"), "Nd": of("Nd", "10"), "wd": of("wd", "0"),
+        "yMax": fixed("Modelica.Constants.inf")})],
     "simulink_pid_parallel": [(set_param, {"Controller": fixed("PID")} |
                                same_names("P", "I", "D", "N", "Form", "b", "c"))],
     "simulink_pid_ideal": [(set_param, {"Controller": fixed("PID")} | same_names("P", "I", "D", "N", "Form"))],

@@ -1,7 +1,7 @@
 """Writes the wheel and the source archive of the client for pip (PEP 517) with the standard library alone.
 
-The module goes in as a package, because only packages can carry py.typed, which tells type checkers to use its
-annotations (PEP 561). Name, version and description are those of pyproject.toml.
+py.typed tells type checkers to use the package's annotations (PEP 561). Name, version and description are those of
+pyproject.toml.
 """
 
 import base64
@@ -29,7 +29,7 @@ def build_wheel(wheel_directory: str, config_settings: Optional[Dict[str, Any]] 
                 metadata_directory: Optional[str] = None) -> str:
     name = _name()
     files = {
-        "tunewright/__init__.py": (HERE / "tunewright.py").read_bytes(),
+        **{"tunewright/" + path.name: path.read_bytes() for path in sorted((HERE / "tunewright").glob("*.py"))},
         "tunewright/py.typed": b"",
         name + ".dist-info/METADATA": _metadata(),
         name + ".dist-info/WHEEL": b"Wheel-Version: 1.0\nGenerator: tunewright\nRoot-Is-Purelib: true\nTag: py3-none-any\n",

@@ -1,5 +1,5 @@
-// Libraries of programming languages: simple-pid, ControlSystems.jl, DiscretePIDs.jl, ros2_control's control_toolbox,
-// python-control, Octave's package control.
+// Libraries of programming languages: simple-pid, ControlSystems.jl, DiscretePIDs.jl, Modelica, ros2_control's
+// control_toolbox, python-control, Octave's package control.
 #include "engine/controller/product/catalogue/terms.h"
 
 namespace tunewright::product {
@@ -226,6 +226,80 @@ Product discrete_pids() {
     };
 }
 
+Option controller_type(std::string_view word, bool integral, bool derivative) {
+    return {.value = std::string(word), .integral = integral, .derivative = derivative};
+}
+
+Product lim_pid() {
+    return {
+        .id = "modelica_limpid",
+        .maker = "Modelica Association",
+        .name = "Modelica.Blocks.Continuous.LimPID",
+        .families = {"Modelica Standard Library", "Dymola", "OpenModelica"},
+        .form = Form::ideal,
+        .law = "y = k [ (wp u_s - u_m) + (1/(Ti s)) (u_s - u_m) + (Td s/((Td/Nd) s + 1)) (wd u_s - u_m) ]",
+        .gain_basis = "engineering units",
+        .parameters =
+            {
+                {.name = "controllerType",
+                 .label = "controllerType",
+                 .role = ParameterRole::choice,
+                 .shape = Shape::option,
+                 .options = {controller_type("PID", true, true), controller_type("PI", true, false),
+                             controller_type("PD", false, true), controller_type("P", false, false)},
+                 .remark = "Modelica.Blocks.Types.SimpleController"},
+                {.name = "k", .label = "k", .role = ParameterRole::gain, .term = kKp},
+                {.name = "Ti",
+                 .label = "Ti",
+                 .unit = "s",
+                 .role = ParameterRole::integral,
+                 .term = kTi,
+                 .range = {0, kUnbounded},
+                 .standard = 0.5},
+                {.name = "Td",
+                 .label = "Td",
+                 .unit = "s",
+                 .role = ParameterRole::derivative,
+                 .term = kTd,
+                 .range = {0, kUnbounded},
+                 .standard = 0.1},
+                {.name = "Nd",
+                 .label = "Nd",
+                 .role = ParameterRole::filter,
+                 .term = kFilterGain,
+                 .range = {0, kUnbounded},
+                 .standard = 10.0,
+                 .remark = "a ratio, Td/Tf"},
+                {.name = "wp", .label = "wp", .role = ParameterRole::weight_b, .shape = Shape::weight, .standard = 1.0},
+                {.name = "wd", .label = "wd", .role = ParameterRole::weight_c, .shape = Shape::weight, .standard = 0.0},
+            },
+        .filter = {FilterKind::parameter, 0, "First order, Td/Nd; it cannot be switched off."},
+        .weights = {1, 0, "wp and wd, from 0."},
+        .action = {.kind = Action::Kind::reverse_only,
+                   .text = "k is at least 0; for direct action negate the output of the block and its measurement's "
+                           "error."},
+        .algorithm = {.text = "a block in continuous time",
+                      .anti_windup = "back-calculation with the time Ni Ti, Ni 0.9 by default",
+                      .sample_time_text = "none; the solver chooses its steps"},
+        .traps = {"yMax has no default, and yMin is -yMax by default: set the limits of your actuator.",
+                  "Ti and Td are 0.5 s and 0.1 s if they are left out."},
+        .evidence = {.level = EvidenceLevel::read,
+                     .read = {"the whole block"},
+                     .sources = {"Modelica Standard Library, Modelica/Blocks/Continuous.mo, LimPID"}},
+        .example = of_design_a({{"controllerType", std::string("PID")},
+                                {"k", 1.5},
+                                {"Ti", 120.0},
+                                {"Td", 20.0},
+                                {"Nd", 10.0},
+                                {"wp", 0.6},
+                                {"wd", 0.0}}),
+        .snippets = {{"Modelica",
+                      "Modelica.Blocks.Continuous.LimPID "
+                      "controller(controllerType=Modelica.Blocks.Types.SimpleController.{controllerType}, k={k}, "
+                      "Ti={Ti|0.5}, Td={Td|0.1}, Nd={Nd|10}, wp={wp}, wd={wd|0}, yMax=Modelica.Constants.inf);"}},
+    };
+}
+
 Product ros() {
     return {
         .id = "ros_control_toolbox",
@@ -344,7 +418,7 @@ Product octave_control() {
 }  // namespace
 
 std::vector<Product> library_products() {
-    return {simple_pid(), control_systems(), discrete_pids(), ros(), python_control(), octave_control()};
+    return {simple_pid(), control_systems(), discrete_pids(), lim_pid(), ros(), python_control(), octave_control()};
 }
 
 }  // namespace tunewright::product

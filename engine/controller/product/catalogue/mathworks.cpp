@@ -1,4 +1,4 @@
-// MathWorks: pidstd and pid of MATLAB, the blocks of Simulink.
+// MathWorks: pidstd, pid, pidstd2 and pid2 of MATLAB, the blocks of Simulink.
 #include "engine/controller/product/catalogue/terms.h"
 
 namespace tunewright::product {
@@ -85,6 +85,40 @@ Product pid() {
         .example = of_design_a({{"Kp", 1.5}, {"Ki", 0.0125}, {"Kd", 30.0}, {"Tf", 2.0}}),
         .snippets = {{"MATLAB", "C = pid({Kp}, {Ki}, {Kd}, {Tf|0});"}},
     };
+}
+
+/// The same law with two inputs, r and y.
+Product two_inputs(Product product, std::string_view id, std::string_view name, std::string_view law,
+                   std::string_view page) {
+    product.id = id;
+    product.name = name;
+    product.law = law;
+    for (Parameter& parameter : product.parameters) {
+        if (!parameter.elsewhere) continue;
+        parameter.elsewhere = false;
+        parameter.remark = "";
+    }
+    product.weights.text = "b and c can have any value.";
+    product.evidence = {.level = EvidenceLevel::read, .read = {"formula, defaults"}, .sources = {page}};
+    product.example.settings.push_back({"b", 0.6});
+    product.example.settings.push_back({"c", 0.0});
+    return product;
+}
+
+Product pidstd2() {
+    Product product = two_inputs(pidstd(), "matlab_pidstd2", "MATLAB pidstd2",
+                                 "u = Kp [ (b r - y) + (1/(Ti s)) (r - y) + (Td s/((Td/N) s + 1)) (c r - y) ]",
+                                 "mathworks.com control/ref/pidstd2");
+    product.snippets = {{"MATLAB", "C = pidstd2({Kp}, {Ti}, {Td}, {N|Inf}, {b}, {c});"}};
+    return product;
+}
+
+Product pid2() {
+    Product product = two_inputs(pid(), "matlab_pid2", "MATLAB pid2",
+                                 "u = Kp (b r - y) + (Ki/s) (r - y) + (Kd s/(Tf s + 1)) (c r - y)",
+                                 "mathworks.com control/ref/pid2, piddata2");
+    product.snippets = {{"MATLAB", "C = pid2({Kp}, {Ki}, {Kd}, {Tf|0}, {b}, {c});"}};
+    return product;
 }
 
 Parameter pole() {
@@ -241,6 +275,8 @@ Product autotuner() {
 
 }  // namespace
 
-std::vector<Product> mathworks_products() { return {pidstd(), pid(), block_parallel(), block_ideal(), autotuner()}; }
+std::vector<Product> mathworks_products() {
+    return {pidstd(), pid(), pidstd2(), pid2(), block_parallel(), block_ideal(), autotuner()};
+}
 
 }  // namespace tunewright::product

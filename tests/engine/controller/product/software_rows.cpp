@@ -102,6 +102,22 @@ const std::map<std::string, Row>& software_rows() {
          {{{"Kp", Kp}, {"Ki", Kp / Ti}, {"Kd", Kp * Td}, {"Tf", Tf}},
           {},
           [](const Typed& t, Complex s) { return parallel(t["Kp"], t["Ki"], t["Kd"], t["Tf"], 1, 1, s); }}},
+        {"matlab_pidstd2",
+         {{{"Kp", Kp}, {"Ti", Ti}, {"Td", Td}, {"N", Td / Tf}, {"b", b}, {"c", 0}},
+          {},
+          [](const Typed& t, Complex s) {
+              return ideal(t["Kp"], t["Ti"], t["Td"], t["Td"] / t["N"], t["b"], t["c"], s);
+          }}},
+        {"matlab_pid2",
+         {{{"Kp", Kp}, {"Ki", Kp / Ti}, {"Kd", Kp * Td}, {"Tf", Tf}, {"b", b}, {"c", 0}},
+          {},
+          [](const Typed& t, Complex s) { return parallel(t["Kp"], t["Ki"], t["Kd"], t["Tf"], t["b"], t["c"], s); }}},
+        {"modelica_limpid",
+         {{{"k", Kp}, {"Ti", Ti}, {"Td", Td}, {"Nd", Td / Tf}, {"wp", b}, {"wd", 0}},
+          {{"controllerType", "PID"}},
+          [](const Typed& t, Complex s) {
+              return ideal(t["k"], t["Ti"], t["Td"], t["Td"] / t["Nd"], t["wp"], t["wd"], s);
+          }}},
         {"python_control", transfer_function()},
         {"octave_control", transfer_function()},
         {"simulink_pid_parallel",

@@ -1,14 +1,4 @@
-"""Tunes PID controllers with a Tunewright service. It needs only Python's standard library.
-
-    from tunewright import Client
-
-    result = Client().tune(plant="2 e^(-3s)/(10s+1)", tune=[{"method": "robust", "Ms": 1.4, "Mt": 1.4}])
-    print(result.best["controller"])
-
-Requests and answers are those of the service's own description, GET /openapi.json, as dictionaries: that description
-has the names, units and meanings of all fields, and they are not repeated here. Further keyword arguments of a call go
-into its request unchanged, so that a newer service needs no newer client.
-"""
+"""The calls of a service."""
 
 import csv
 import io
@@ -25,7 +15,9 @@ from urllib.error import HTTPError
 from urllib.parse import quote, urlencode
 from urllib.request import Request, urlopen
 
-__all__ = ["Check", "Client", "Fault", "Problem", "Result", "record"]
+from .answers import Answer, Check, Result
+from .systems import controller_of, plant_of
+from .tables import Table
 
 Json = Dict[str, Any]
 Methods = Sequence[Union[str, Mapping[str, Any]]]
@@ -62,41 +54,6 @@ class Problem(Exception):
         return "\n".join(lines)
 
 
-class Result(Dict[str, Any]):
-    """The result of a job (TuningResult); `job` holds the job without its result."""
-
-    def __init__(self, job: Mapping[str, Any]) -> None:
-        super().__init__(job["result"])
-        self.job: Json = {name: value for name, value in job.items() if name != "result"}
-
-    @property
-    def best(self) -> Json:
-        """The entry that ranks first. An operating range has no ranking: its answer is in result["range"]."""
-        if "loops" in self:
-            raise LookupError('This result is a check of loops: its work list is in result["ranking"], its loops in '
-                              'result["loops"].')
-        if "ranking" not in self:
-            raise LookupError('This result has no ranking: an operating range is answered in result["range"], with '
-                              'its one setting ("one") and its rows ("schedule").')
-        entry: Json = self["controllers"][self["ranking"][0]]
-        return entry
-
-
-class Check(Dict[str, Any]):
-    """The answer of a check: {loops, clusters, cascades, ranking, ...}. `batch` is the id of its batch, for changes();
-    `job` the job of a check of given loops, for report_html(). The other of the two is None."""
-
-    def __init__(self, answer: Mapping[str, Any], batch: Optional[str] = None, job: Optional[Json] = None) -> None:
-        super().__init__(answer)
-        self.batch = batch
-        self.job = job
-
-    @property
-    def work_list(self) -> List[Json]:
-        """The loops in the order in which to work on them."""
-        return [self["loops"][rank["loop"]] for rank in self["ranking"]]
-
-
 def record(source: Any, **fields: Any) -> Json:
     """A recorded test in the form that a request takes.
 
@@ -131,12 +88,13 @@ class Client:
     # Jobs: stored by the service, available by their id.
 
     def tune(self, plant: Any = None, record: Any = None, tune: Optional[Methods] = None,
-             baseline: Optional[Mapping[str, Any]] = None, evaluate: Optional[Mapping[str, Any]] = None,
-             **rest: Any) -> Result:
+             baseline: Any = None, evaluate: Optional[Mapping[str, Any]] = None, **rest: Any) -> Result:
         """Tunes for a plant or a recorded test, waits for the end, and returns the result.
 
-        `plant` is an object or a text such as "2 e^(-3s)/(10s+1)"; `record` anything that record() takes; `tune` a
-        list of methods, by name or with options. A KeyboardInterrupt cancels the job.
+        `plant` is an object, a text such as "2 e^(-3s)/(10s+1)", or a model of python-control or scipy.signal, whose
+        dead time is `delay`; `record` anything that record() takes; `tune` a list of methods, by name or with options;
+        `baseline` an object, a text such as "pidstd(1.5, 120, 20, 10)", or a transfer function of python-control. A
+        KeyboardInterrupt cancels the job.
         """
         return self.run(_request(plant=plant, record=record, tune=_methods(tune), baseline=baseline, evaluate=evaluate,
                                  **rest))
@@ -204,6 +162,10 @@ class Client:
             place = "controllers/%d" % result["ranking"][0] if "ranking" in result else "schedule"
         return self._body("%s/%s/code%s" % (_job(job), place, _query({"language": language, **options})))
 
+    def traces(self, job: Union[str, Result], traces: str = "responses") -> Table:
+        """The traces of a job as columns with their units: "responses", "frequency", or "model" with the record."""
+        return Table.of_csv(self._body("%s/result.csv%s" % (_job(job), _query({"traces": traces}))))
+
     # Many loops at once.
 
     def batch(self, requests: Iterable[Mapping[str, Any]], progress: Optional[Progress] = None,
@@ -214,7 +176,7 @@ class Client:
         The batch is posted at once; `progress(done, total)` is called with each row. Leaving the loop over the rows
         early, also by an interrupt, cancels the remaining jobs. `timeout` is the longest wait for the next row.
         """
-        lines = b"".join(_encoded(request) + b"\n" for request in requests)
+        lines = b"".join(_encoded(_with_models(request)) + b"\n" for request in requests)
         headers = {"Content-Type": "application/x-ndjson", "Idempotency-Key": str(uuid.uuid4())}
         batch = self._json("POST", "/v1/batches" + _query({"name": name}), lines, headers)
         return self._rows("/v1/batches/" + batch["id"], batch["total"], progress or (lambda done, total: None))
@@ -288,17 +250,23 @@ class Client:
 
     # Calls that are answered at once and store nothing.
 
-    def identify(self, record: Any, identify: Optional[Mapping[str, Any]] = None, **rest: Any) -> Json:
+    def plant(self, plant: Any, delay: Optional[float] = None, **rest: Any) -> Json:
+        """A plant in every form: {"plant", "formula" as MathML, "text", "snippets" for MATLAB, python-control, Julia and
+        Modelica}."""
+        given = {"text": plant} if isinstance(plant, str) else {"plant": plant_of(plant, delay)}
+        return self._json("POST", "/v1/plants/parse", {**given, **rest})
+
+    def identify(self, record: Any, identify: Optional[Mapping[str, Any]] = None, **rest: Any) -> Answer:
         """Finds the plant in a recorded test: {"model": {"plant", "fit_percent", ...}}."""
-        return self._post("/v1/identify", record=record, identify=identify, **rest)
+        return Answer(self._post("/v1/identify", record=record, identify=identify, **rest))
 
-    def evaluate(self, plant: Any, controllers: Sequence[Mapping[str, Any]], **rest: Any) -> Json:
+    def evaluate(self, plant: Any, controllers: Sequence[Any], **rest: Any) -> Answer:
         """Evaluates given controllers on a plant: {"controllers": [an entry for each]}."""
-        return self._post("/v1/evaluate", plant=plant, controllers=list(controllers), **rest)
+        return Answer(self._post("/v1/evaluate", plant=plant, controllers=list(controllers), **rest))
 
-    def design(self, plant: Any, method: Union[str, Mapping[str, Any]] = "robust", **rest: Any) -> Json:
+    def design(self, plant: Any, method: Union[str, Mapping[str, Any]] = "robust", **rest: Any) -> Answer:
         """Designs with one method: {"controllers": [its entry, and that of `baseline` if one is given]}."""
-        return self._post("/v1/design", plant=plant, tune=_methods([method]), **rest)
+        return Answer(self._post("/v1/design", plant=plant, tune=_methods([method]), **rest))
 
     def frontier(self, plant: Any, **rest: Any) -> Json:
         """The least load IAE under each limit on Ms: {"points": [...], "infeasible_below"}."""
@@ -390,7 +358,20 @@ def _request(**fields: Any) -> Json:
     """The fields that were given."""
     if fields.get("record") is not None:
         fields["record"] = record(fields["record"])
-    return {name: value for name, value in fields.items() if value is not None}
+    return _with_models({name: value for name, value in fields.items() if value is not None})
+
+
+def _with_models(request: Mapping[str, Any]) -> Json:
+    """The request with models of other libraries as plants and controllers of the service."""
+    fields = dict(request)
+    delay = fields.pop("delay", None)
+    if "plant" in fields or delay is not None:
+        fields["plant"] = plant_of(fields.get("plant"), delay)
+    if "baseline" in fields:
+        fields["baseline"] = controller_of(fields["baseline"])
+    if "controllers" in fields:
+        fields["controllers"] = [controller_of(each) for each in fields["controllers"]]
+    return fields
 
 
 def _methods(methods: Optional[Methods]) -> Optional[List[Any]]:

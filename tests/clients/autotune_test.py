@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -94,7 +95,7 @@ class AutotuneTest(unittest.TestCase):
         self.assertFalse(again.enough)
 
     def test_a_record_that_is_not_enough_says_what_is_missing(self):
-        tuned = self.tune(Plant(noise=0.5), cycles=1)
+        tuned = self.tune(Plant(noise=2), cycles=1)
         self.assertFalse(tuned.enough)
         self.assertTrue(tuned.missing)
         found = [each["detail"] for each in tuned.result["model"]["warnings"] + tuned.result.best.get("warnings", [])]
@@ -206,25 +207,31 @@ class AutotuneTest(unittest.TestCase):
     def test_the_service_may_be_away_during_the_test(self):
         service = Service("--workers", "1")
         self.addCleanup(lambda: (service.stop(), service.folder.cleanup()))
-        plant, lines = Plant(), []
+        again = [BINARY, "serve", "--listen", "127.0.0.1:%d" % service.port, "--store", service.store]
+        service.command = lambda: again
+        plant, kills = Plant(), []
         client = Client("http://127.0.0.1:%d" % service.port, timeout=60)
-        state = {"down": False}
-
-        def show(line):
-            lines.append(line)
 
         def away():
-            if plant.tested and not state["down"]:
-                state["down"] = True
+            if len(kills) < 3 and plant.time > 20 + 8 * len(kills):
                 service.kill()
-            if state["down"] is True and plant.time > 45:
-                state["down"] = "back"
-                service.start()
+                kills.append(threading.Timer(0.5, service.start))
+                kills[-1].start()
 
         plant.before_read = away
-        tuned = self.tune(plant, client=client, show=show)
-        self.assertEqual(state["down"], "back")
+        tuned = self.tune(plant, client=client)
+        self.assertEqual(len(kills), 3)
         self.assertAlmostEqual(tuned.result["model"]["plant"]["K"], 1.5, delta=0.06)
+
+    def test_a_service_that_stays_away_leaves_the_record(self):
+        service = Service("--workers", "1")
+        self.addCleanup(lambda: (service.stop(), service.folder.cleanup()))
+        plant, client = Plant(), Client("http://127.0.0.1:%d" % service.port, timeout=2)
+        plant.before_read = lambda: service.kill() if plant.tested and service.process.poll() is None else None
+        with self.assertRaises(OSError) as caught:
+            self.tune(plant, client=client, cycles=1)
+        self.assertGreater(len(caught.exception.record["t"]), 40)
+        self.assertEqual(plant.u, U0)
 
     def test_its_programs_are_those_of_the_command(self):
         for kind in ("relay", "bump"):

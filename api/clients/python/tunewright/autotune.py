@@ -15,6 +15,7 @@ import time
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from . import bump_program, relay_program
+from .client import Client
 
 __all__ = ["Autotuned", "TestStopped", "autotune"]
 
@@ -75,22 +76,25 @@ def autotune(read: Callable[[], Reading], write: Callable[[float], Optional[floa
     for `product`, such as y_span and u_span.
 
     Raises TestStopped after a fault; KeyboardInterrupt after Ctrl-C; Problem for limits that are not valid, before
-    anything is moved. In all cases u is then at `u_safe`, or at `u` if there is none.
+    anything is moved. In all these cases u is at `u_safe`, or at `u` if there is none. If the service is lost for longer
+    than the client's timeout after a complete test, or refuses the record, the exception has the record in `record`.
     """
-    if client is None:
-        from .client import Client
-        client = Client()
+    client = client or Client()
     asked = dict(limits, experiment=experiment, sample_time=sample_time, u_step=u_step)
     client.experiment(language="python", **asked)  # refuses what is not valid, before the plant is moved
     test = _Test(experiment, asked, read, write, float(u), clock, sleep, keep)
     designs = _Designs(client, {"tune": list(tune or [{"method": "robust", "Ms": Ms}]), "evaluate": {"points": 0}},
                        most_cost, show or (lambda line: None), background)
     ended = test.run(designs)
-    result = client.run(dict(designs.request, record=test.record(), **({"name": name} if name else {})))
+    try:
+        result = client.run(dict(designs.request, record=test.record(), **({"name": name} if name else {})))
+        controller = result.best["controller"]
+        typed = client.settings(product, controller, **dict({"sample_time": sample_time, "nearest": True},
+                                                            **(settings or {}))) if product else None
+    except Exception as fault:
+        fault.record = test.record()  # type: ignore[attr-defined]
+        raise
     (show or (lambda line: None))(_line("complete", result))
-    controller = result.best["controller"]
-    typed = client.settings(product, controller, **dict({"sample_time": sample_time, "nearest": True},
-                                                        **(settings or {}))) if product else None
     return Autotuned(controller, typed, result, test.record(), _good(result, most_cost), _missing(result, most_cost), ended)
 
 

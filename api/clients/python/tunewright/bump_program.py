@@ -1,4 +1,4 @@
-# Step test, written by Tunewright 0.1.0.
+# Step test, written by Tunewright 1.0.0.
 #
 # Sample time   1 s, as asked for
 # Settings      Ts 1, u_step 1, rate_limit 0, quiet_time 30, max_time 5000, hysteresis_min 0,

@@ -149,7 +149,7 @@ class ExperimentsTest(unittest.TestCase):
                 self.assertEqual(model["data_quality"]["kind"], {"relay": "relay", "bump": "several_steps"}[kind])
                 self.assertGreater(model["fit_percent"], 90)
 
-    @unittest.skipUnless(AVR, "gcc-avr is not installed; script/bootstrap check installs it")
+    @unittest.skipUnless(AVR, "gcc-avr is not installed; script/bootstrap peers installs it")
     def test_a_sketch_compiles_for_an_8_bit_board(self):
         for kind in ("relay", "bump"):
             with tempfile.TemporaryDirectory() as name:

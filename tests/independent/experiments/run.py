@@ -3,6 +3,9 @@
 and do settings from their record hold Ms on the true plant?
 
     tests/independent/experiments/run.py [--binary FILE] [--experiment relay] [--seed 1] [--Ms 1.4] [--keep FOLDER]
+    tests/independent/experiments/run.py --client [...]
+
+--client: through autotune of the Python client, with a service that is killed and started again every four seconds.
 
 Prints a line for each plant, then counts; exit code 1 if a test did not end or broke a limit, or if fewer than 95 % of the
 settings hold Ms within 1.25 times the limit."""
@@ -11,9 +14,11 @@ import argparse
 import json
 import pathlib
 import random
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 
 import numpy as np
 
@@ -50,6 +55,69 @@ def simulate(test, plant, Ts, case, size, chance, most=6000):
             return rows, reason, u
         process.advance(u - U0 + case["drift"] * STEP * min(1, k * Ts / (20 * case["period"])))
     return rows, None, u
+
+
+class RestartedService:
+    """A service on one port and one store that is killed and started again every four seconds, and a client of it."""
+
+    def __init__(self, binary, folder):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.port = free.getsockname()[1]
+        self.command = [binary, "serve", "--listen", "127.0.0.1:%d" % self.port, "--store", "sqlite:%s/jobs.db" % folder]
+        self.kills, self.over = 0, threading.Event()
+        self.start()
+        sys.path.insert(0, str(ROOT / "api" / "clients" / "python"))
+        from tunewright import Client
+        self.client = Client("http://127.0.0.1:%d" % self.port)
+        self.client.get("/v1/methods")
+        threading.Thread(target=self.restart, daemon=True).start()
+
+    def start(self):
+        self.process = subprocess.Popen(self.command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        self.process.stdout.readline()
+
+    def restart(self):
+        while not self.over.wait(4.0):
+            self.process.kill()
+            self.process.wait()
+            self.kills += 1
+            self.start()
+
+    def stop(self):
+        self.over.set()
+        self.process.kill()
+
+
+def through_client(service, kind, options, plant, Ts, case, size, chance, Ms):
+    """The same test by autotune; its result in the place of the file's."""
+    from tunewright import Problem, TestStopped, autotune
+    process, now = Simulation(plant, Ts), {"t": 0.0, "u": U0}
+
+    def read():
+        y = Y0 + process.sample() + chance.gauss(0, 1) * case["noise"] * size
+        quantum = case["quantum"] * size
+        return round(y / quantum) * quantum if quantum else y
+
+    def write(u):
+        now["u"] = u
+
+    def sleep(seconds):
+        process.advance(now["u"] - U0 + case["drift"] * STEP * min(1, now["t"] / (20 * case["period"])))
+        now["t"] += seconds
+
+    def tuned_with(limit):
+        return autotune(read, write, U0, experiment=kind, Ms=limit, client=service.client,
+                        clock=lambda: now["t"], sleep=sleep, background=False, show=None, **options)
+
+    try:
+        return Ms, tuned_with(Ms).result, now["u"], None
+    except TestStopped as stopped:
+        return Ms, {}, now["u"], str(stopped)
+    except Problem as problem:  # no controller of the model keeps the limit: the record again with the least that one keeps
+        limit = float(problem.body["cure"]["options"]["Ms"])
+        request = {"record": problem.record, "tune": [{"method": "robust", "Ms": limit}], "evaluate": {"points": 0}}
+        return limit, service.client.run(request), now["u"], None
 
 
 def controller_of(entry):
@@ -104,6 +172,8 @@ def run(case, chosen, chance, folder, number):
         options["action"] = "reverse" if plant.K > 0 else "direct"
     if chosen.experiment == "bump" and plant.integrators:
         options["y_move"] = 3 * size
+    if chosen.client:
+        return run_client(case, chosen, options, Ts, size, chance, number)
     test, sentences = program(chosen.binary, chosen.experiment, options)
     rows, reason, u = simulate(test, plant, Ts, case, size, chance)
     file = folder / ("%02d.csv" % number)
@@ -127,6 +197,14 @@ def run(case, chosen, chance, folder, number):
     return ended, ratio
 
 
+def run_client(case, chosen, options, Ts, size, chance, number):
+    limit, answer, u, why = through_client(chosen.service, chosen.experiment, options, case["plant"], Ts, case, size, chance,
+                                           chosen.Ms)
+    Ms = judge(case["plant"], answer["controllers"][0]) if "controllers" in answer else None
+    print("%02d %-18s %s" % (number, case["kind"], why or "Ms %.3f of %.3g" % (Ms, limit)), flush=True)
+    return why is None and u == U0, None if Ms is None else Ms / limit
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--binary", default=str(ROOT / "build" / "release" / "tunewright"))
@@ -136,14 +214,20 @@ def main():
     parser.add_argument("--keep")
     parser.add_argument("--only", type=int)
     parser.add_argument("--untold", action="store_true", help="the sign of the gain is never told")
+    parser.add_argument("--client", action="store_true")
     chosen = parser.parse_args()
     chance = random.Random(chosen.seed)
-    with tempfile.TemporaryDirectory() as temporary:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
         folder = pathlib.Path(chosen.keep or temporary)
         folder.mkdir(exist_ok=True)
+        if chosen.client:
+            chosen.service = RestartedService(chosen.binary, folder)
         cases = sixty(chance)
         results = [run(case, chosen, random.Random(1000 * chosen.seed + i), folder, i) for i, case in enumerate(cases)
                    if chosen.only is None or i == chosen.only]
+    if chosen.client:
+        chosen.service.stop()
+        print("the service was killed %d times" % chosen.service.kills)
     ended = sum(e for e, _ in results)
     held = sum(ratio is not None and ratio <= 1.25 for _, ratio in results)
     print("%d plants: %d ended by themselves within limits, settings hold Ms within 1.25 times %g on %d" %

@@ -66,15 +66,27 @@ Json plant_json(const PlantModel& plant) {
     return Json::parse(out.view());
 }
 
-/// A typed plant is stored as its object: readers of the job find a plant, and all spellings of it are the same
-/// request. False if there is none.
-bool canonicalise_plants(Json& value, const JobRequest& request) {
-    if (!request.plant || !is_typed(value["plant"])) return false;
-    value["plant"] = plant_json(*request.plant);
+/// Replaces the text of a controller by the settings that were read in it. False if it is no such text.
+bool canonicalise_controller(Json& value, const SentController& sent) {
+    if (!value.is_string() || !sent.typed) return false;
+    Writer out;
+    sent_controller().write(sent, out);
+    value = Json::parse(out.view());
     return true;
 }
 
-bool canonicalise_plants(Json& value, const RangeRequest& request) {
+/// Typed plants and controllers are stored as their objects: readers of the job find a plant and settings, and all
+/// spellings of them are the same request. False if there is none.
+bool canonicalise_texts(Json& value, const JobRequest& request) {
+    bool typed = request.plant && is_typed(value["plant"]);
+    if (typed) value["plant"] = plant_json(*request.plant);
+    if (request.baseline) typed |= canonicalise_controller(value["baseline"], *request.baseline);
+    for (std::size_t k = 0; k < request.controllers.size(); ++k)
+        typed |= canonicalise_controller(value["controllers"][k], request.controllers[k]);
+    return typed;
+}
+
+bool canonicalise_texts(Json& value, const RangeRequest& request) {
     bool typed = false;
     if (!request.points) return typed;
     for (std::size_t k = 0; k < request.points->size(); ++k) {
@@ -87,8 +99,8 @@ bool canonicalise_plants(Json& value, const RangeRequest& request) {
 }
 
 /// Records, and plants that a reader of the job finds as they were typed.
-bool canonicalise_plants(Json&, const CheckRequest&) { return false; }
-bool canonicalise_plants(Json&, const StructureRequest&) { return false; }
+bool canonicalise_texts(Json&, const CheckRequest&) { return false; }
+bool canonicalise_texts(Json&, const StructureRequest&) { return false; }
 
 JobSubject subject_of(const Json& request) {
     if (!structure_of(request).empty()) return JobSubject::structure;
@@ -121,7 +133,7 @@ JobOutcome outcome_of(const Request& request, std::string_view hash, const RunCo
     return structure_outcome(request, hash, control);
 }
 
-/// `text` is the stored request unless it has a typed plant.
+/// `text` is the stored request unless it has a typed plant or controller.
 template <class Request, class Spelling>
 std::variant<PreparedJob, Problem> prepared_as(const Description<Request>& contract, Json& value,
                                                const JobLimits& limits, const Spelling& text) {
@@ -131,7 +143,7 @@ std::variant<PreparedJob, Problem> prepared_as(const Description<Request>& contr
     const bool given = value.contains("timeout_s");
     if (given && request.timeout_s > limits.longest_timeout_s) return timeout_too_long(request.timeout_s, limits);
     if (auto problem = refuse_far(request.not_before)) return *std::move(problem);
-    const bool typed = canonicalise_plants(value, request);
+    const bool typed = canonicalise_texts(value, request);
     PreparedJob job{.name = request.name.value_or(""),
                     .timeout_s = given ? request.timeout_s : limits.default_timeout_s,
                     .request_json = typed ? value.dump() : text(),

@@ -261,7 +261,7 @@ class AnswersTest(unittest.TestCase):
         ys = self.result["controllers"][0]["responses"]["setpoint"]["y"]
         for found, wanted in zip(table.column("simc setpoint y"), ys):
             self.assertAlmostEqual(found, wanted, delta=1e-5 * max(1, abs(wanted)))
-        self.assertEqual(self.client.traces(self.result, "frequency").columns[0], "omega [rad/min]")
+        self.assertEqual(self.client.traces(self.result, "frequency").columns[0], "simc omega [rad/min]")
 
     def test_rows_of_a_batch_are_a_table(self):
         requests = [{"name": "TIC-%d" % i, "plant": {**FOPDT, "L": i}, "tune": [{"method": "simc"}],

@@ -9,8 +9,8 @@ import service
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = ["README.md"] + [f"docs/{name}.md" for name in (
-    "api", "batches", "check", "code", "command-line", "controllers", "jobs", "live", "nonlinear", "plants", "range",
-    "records", "relay", "report", "structures", "tutorial", "uncertain")]
+    "api", "batches", "check", "code", "command-line", "controllers", "interoperability", "jobs", "live", "nonlinear",
+    "plants", "range", "records", "relay", "report", "structures", "tutorial", "uncertain")]
 
 
 def faults_of(name, text, port):

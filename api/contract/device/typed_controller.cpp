@@ -66,7 +66,8 @@ product::Value word_for(const Parameter& parameter, const std::string& word) {
 }
 
 void add_setting(const Parameter& parameter, const Argument& argument, Cursor& cursor, product::Settings& settings) {
-    if (argument.is_word) {
+    const bool has_words = !parameter.options.empty() || parameter.shape == product::Shape::constant;
+    if (argument.is_word && has_words) {
         settings.push_back({std::string(parameter.name), word_for(parameter, argument.word)});
         return;
     }

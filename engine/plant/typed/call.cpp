@@ -13,7 +13,7 @@ bool is_plain_word(const Cursor& cursor, const Names& names) {
     const Word& word = cursor.now();
     if (word.kind != Word::Kind::name || names.contains(word.text) || at_list(cursor, names)) return false;
     const std::string name = lower(word.text);
-    return name != "inf" && name != "pi" && name != "i" && name != "j" && name != "im";
+    return name != "inf" && word.text != "pi" && name != "i" && name != "j" && name != "im";
 }
 
 Argument read_value_of_argument(Cursor& cursor, const Names& names) {

@@ -261,7 +261,7 @@ private:
             return 0;
         }
         if (name == "inf") return std::numeric_limits<double>::infinity();
-        if (name == "pi") return std::numbers::pi;
+        if (word.text == "pi") return std::numbers::pi;  // PI is a kind of controller
         cursor_.fail(word.position, quoted(word.text) +
                                         " has no value here; write its number, or assign it before, as in T = 10; "
                                         "G = tf(2,[T 1]).");

@@ -186,8 +186,8 @@ export type components = {
       ultimate?: components["schemas"]["UltimateTest"];
       identify?: components["schemas"]["Identify"];
       tune?: components["schemas"]["Method"][] | "all";
-      controllers?: (components["schemas"]["Controller"] | components["schemas"]["TypedSettings"])[];
-      baseline?: components["schemas"]["Controller"] | components["schemas"]["TypedSettings"] | "from-record";
+      controllers?: (components["schemas"]["Controller"] | components["schemas"]["TypedSettings"] | components["schemas"]["TypedController"])[];
+      baseline?: components["schemas"]["Controller"] | components["schemas"]["TypedSettings"] | components["schemas"]["TypedController"] | "from-record";
       implement?: components["schemas"]["Implement"];
       evaluate?: components["schemas"]["Evaluate"];
       uncertainty?: "auto" | "none" | "identified";
@@ -328,6 +328,7 @@ export type components = {
       ];
       sample_time?: number;
     };
+    TypedController: string;
     Implement: {
       product?: string;
       y_span?: [
@@ -2307,6 +2308,7 @@ export type components = {
       plant?: components["schemas"]["Plant"];
       formula?: string;
       text?: string;
+      snippets?: components["schemas"]["Snippet"][];
       fault?: string;
     };
     PreviewAnswer: {
@@ -2557,6 +2559,7 @@ export type Filter = components['schemas']['Filter'];
 export type ParallelController = components['schemas']['ParallelController'];
 export type SeriesController = components['schemas']['SeriesController'];
 export type TypedSettings = components['schemas']['TypedSettings'];
+export type TypedController = components['schemas']['TypedController'];
 export type Implement = components['schemas']['Implement'];
 export type Evaluate = components['schemas']['Evaluate'];
 export type Actuator = components['schemas']['Actuator'];

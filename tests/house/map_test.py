@@ -18,6 +18,7 @@ SOURCES = (".h", ".cpp", ".ts", ".css")
 FAMILIES = {
     "engine/controller/product/catalogue/*.cpp": ("engine/controller/product/catalogue.h", "data, a maker each"),
     "engine/code/c.cpp": ("engine/code/print.h", "a printer for each language"),
+    "engine/code/arduino.cpp": ("engine/code/print.h", "a printer for each language"),
     "engine/code/python.cpp": ("engine/code/print.h", "a printer for each language"),
     "engine/code/structured_text.cpp": ("engine/code/print.h", "a printer for each language"),
     "engine/request/verdict/*.cpp": ("engine/request/verdict/findings.h", "findings, a subject each"),

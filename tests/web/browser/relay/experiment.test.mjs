@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { accessibilityViolations, browserTests, overflow, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, overflow, WINDOWS } from "../../harness.mjs";
 
 const { withPage } = browserTests();
 const ADDRESS = "#/relay/fopdt?K=1&T=10&L=2";

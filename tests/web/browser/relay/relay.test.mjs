@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS } from "../../harness.mjs";
 
 const { withPage } = browserTests();
 

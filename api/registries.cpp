@@ -5,6 +5,7 @@
 #include "api/contract/method_options.h"
 #include "api/contract/methods.h"
 #include "api/contract/product/conversion.h"
+#include "api/contract/product/meant_product.h"
 #include "api/contract/product/product.h"
 #include "api/describe/body.h"
 #include "api/describe/suggest.h"
@@ -49,15 +50,9 @@ namespace {
 using product::Product;
 
 Answer no_such_controller(std::string_view id) {
-    std::vector<std::string> ids;
-    for (const Product& product : product::catalogue()) ids.emplace_back(product.id);
     Problem problem{404, "not-found", "There is no such controller", "", {}, {}};
-    std::vector<std::string> meant;
-    for (const std::string& known : ids)
-        if (!id.empty() && known.find(id) != known.npos) meant.push_back(known);
-    if (const std::string near = nearest(id, ids); meant.empty() && !near.empty()) meant.push_back(near);
-    problem.detail = meant.empty() ? "GET /v1/controllers, or tunewright controllers, lists them."
-                                   : "Did you mean " + listed(meant) + "?";
+    const std::string meant = meant_product(id);
+    problem.detail = meant.empty() ? "GET /v1/controllers, or tunewright controllers, lists them." : meant;
     return refusal(problem);
 }
 

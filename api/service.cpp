@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "api/check_service.h"
 #include "api/contract/controller.h"
 #include "api/contract/controller_record.h"
 #include "api/contract/plant/typed.h"
@@ -18,6 +17,7 @@
 #include "api/json/digest.h"
 #include "api/json/json.h"
 #include "api/outline.h"
+#include "api/services/check_service.h"
 #include "api/services/range_service.h"
 #include "api/services/structure_service.h"
 #include "engine/evaluation/best_so_far.h"
@@ -165,18 +165,6 @@ std::variant<PreparedJob, Problem> prepared(Json& value, const JobLimits& limits
     return with_contract(value, [&](const auto& contract) { return prepared_as(contract, value, limits, text); });
 }
 
-/// Sets the default of a batch's entry, no traces; a value of the wrong type is left for the contract to refuse.
-void ask_for_no_traces(Json& request) {
-    if (!request.is_object() || is_check_request(request)) return;
-    if (is_range_request(request)) {
-        if (!request.contains("runs")) request["runs"] = false;
-        return;
-    }
-    if (!request.contains("evaluate")) request["evaluate"] = Json::object();
-    Json& evaluate = request["evaluate"];
-    if (evaluate.is_object() && !evaluate.contains("points")) evaluate["points"] = 0;
-}
-
 Json identify_json(const CsvRequest& question) {
     Json options{{"traces", question.traces}};
     if (!question.model.empty()) options["model"] = question.model;
@@ -258,6 +246,17 @@ std::variant<PreparedJob, Problem> prepare_structure(std::string_view body, cons
     return with_contract(Json{{"structure", structure}}, [&](const auto& contract) {
         return prepared_as(contract, value, {}, [&] { return value.dump(); });
     });
+}
+
+void ask_for_no_traces(Json& request) {
+    if (!request.is_object() || is_check_request(request)) return;
+    if (is_range_request(request)) {
+        if (!request.contains("runs")) request["runs"] = false;
+        return;
+    }
+    if (!request.contains("evaluate")) request["evaluate"] = Json::object();
+    Json& evaluate = request["evaluate"];
+    if (evaluate.is_object() && !evaluate.contains("points")) evaluate["points"] = 0;
 }
 
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -58,6 +59,9 @@ std::variant<PreparedJob, Problem> prepare_structure(std::string_view body, cons
 /// Reads and checks an entry of a batch, which has no traces unless it asks for them: evaluate.points is 0 by default,
 /// also in the stored request. 422 if it has terms that only a whole batch can have.
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits = {});
+
+/// Sets that default of a batch's entry: no traces. A value of the wrong type is left for the contract to refuse.
+void ask_for_no_traces(nlohmann::ordered_json& request);
 
 /// The request of a result, in its stored form, from the text of its file. Problems: those of prepare_job(); 422 if the
 /// result has the hash of another request.

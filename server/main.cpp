@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
     add_loop_commands(tree);
     add_check_command(tree);
     add_list_commands(tree);
+    add_mcp_command(tree);
     add_operator_commands(tree);
     add_tree_commands(tree);
     return tree.run(argc, argv);

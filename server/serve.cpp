@@ -265,7 +265,10 @@ private:
         add_queue_routes(router_, jobs_);
         add_batch_routes(router_, batches_, jobs_, places_, listers_, batch_lane_, policy_,
                          {{config_.job_timeout_s, config_.max_timeout_s}, config_.max_body});
-        add_synchronous_routes(router_, jobs_, turns_, timer_, spare_cores_, closing_.get_token());
+        const Computations computations(turns_, timer_, spare_cores_, closing_.get_token());
+        add_synchronous_routes(router_, jobs_, computations);
+        add_mcp_routes(router_, jobs_, places_, {turns_, readers_, listers_, searchers_}, computations,
+                       {config_.job_timeout_s, config_.max_timeout_s});
         add_description_routes(router_);
         router_.set_fallback([this](const http::Request& request) { return page_.find(request); });
     }

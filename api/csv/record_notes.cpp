@@ -7,6 +7,16 @@
 
 namespace tunewright::api {
 
+namespace {
+
+/// "C:\\data\\step.csv": one word that ends as files do.
+bool is_file_name(std::string_view line) {
+    constexpr std::string_view kEndings[] = {".csv", ".txt", ".tsv", ".dat", ".log", ".json", ".xlsx"};
+    return std::ranges::any_of(kEndings, [&](std::string_view ending) { return line.ends_with(ending); });
+}
+
+}  // namespace
+
 std::string no_data_sentence(const CsvLayout& layout, std::string_view first_line) {
     if (layout.lines_of_text == 0) return "csv is empty; it needs a heading line such as t,u,y and lines of numbers.";
     for (const std::string& text : layout.headings) {
@@ -15,6 +25,9 @@ std::string no_data_sentence(const CsvLayout& layout, std::string_view first_lin
             if (named && named->level == 1) return "csv has headings but no line of numbers.";
         }
     }
+    if (layout.lines_of_text == 1 && is_file_name(first_line))
+        return "csv is " + in_quotes(first_line) +
+               ", the name of a file; it must be the content of the file, its lines.";
     return "csv has neither lines of numbers in columns nor lines that each name two or more values; it begins with " +
            in_quotes(first_line) +
            ". Export a heading line such as t,u,y and one line per sample, with all its values.";

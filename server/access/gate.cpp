@@ -22,7 +22,8 @@ bool is_probe(const Request& request) { return request.path() == "/healthz" || r
 /// The page, its description and probes contain nothing about jobs.
 bool needs_key(const Request& request) {
     if (request.segments.empty()) return false;
-    return request.segments.front() == "v1" || request.segments.front() == "metrics";
+    const std::string& first = request.segments.front();
+    return first == "v1" || first == "mcp" || first == "metrics";
 }
 
 bool changes(const Request& request) {
@@ -80,7 +81,8 @@ Response preflight() {
     response.status = 204;
     return response.set("Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE")
         .set("Access-Control-Allow-Headers",
-             "Authorization, Content-Type, Idempotency-Key, If-Match, If-None-Match, Last-Event-ID, Prefer, "
+             "Authorization, Content-Type, Idempotency-Key, If-Match, If-None-Match, Last-Event-ID, "
+             "MCP-Protocol-Version, Prefer, "
              "Traceparent, "
              "X-Request-Id")
         .set("Access-Control-Max-Age", "600");

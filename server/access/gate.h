@@ -29,8 +29,8 @@ public:
     explicit Gate(const GateSettings& settings);
 
     /// Fills in client, owner, request_id and answer_headers. Returns the refusal of a request that is not admitted:
-    /// 401 without a known key (below /v1, and /metrics), 421 for a Host that is not one of the service's names, 403
-    /// for another site's page, 429 beyond the rate. Also answers the preflight of an allowed site.
+    /// 401 without a known key (below /v1, /mcp and /metrics), 421 for a Host that is not one of the service's names,
+    /// 403 for another site's page, 429 beyond the rate. Also answers the preflight of an allowed site.
     std::optional<http::Response> admit(http::Request& request);
 
     /// Fills in client, request_id and answer_headers of a request that was refused before it reached the gate.

@@ -14,11 +14,11 @@
 
 #include "api/batch/known_loops.h"
 #include "api/batch/recorded_file.h"
-#include "api/check_service.h"
 #include "api/csv/time_stamp.h"
 #include "api/historian/joined_loops.h"
-#include "api/report/terminal.h"
+#include "api/report/terminal/terminal.h"
 #include "api/service.h"
+#include "api/services/check_service.h"
 #include "server/cli/command_tree.h"
 #include "server/cli/interrupt.h"
 #include "server/cli/output.h"

@@ -60,6 +60,7 @@ void add_serve_command(CommandTree& tree);
 void add_loop_commands(CommandTree& tree);
 void add_check_command(CommandTree& tree);
 void add_list_commands(CommandTree& tree);
+void add_mcp_command(CommandTree& tree);
 void add_operator_commands(CommandTree& tree);
 /// Adds `completion` and `manual`, which describe the tree at the time of the call.
 void add_tree_commands(CommandTree& tree);

@@ -16,7 +16,7 @@
 #include "api/examples/examples.h"
 #include "api/registries.h"
 #include "api/report/report.h"
-#include "api/report/terminal.h"
+#include "api/report/terminal/terminal.h"
 #include "api/service.h"
 #include "api/services/verify/verify_call.h"
 #include "server/cli/verify_table.h"

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "api/json/json.h"
-#include "api/report/terminal.h"
+#include "api/report/terminal/terminal.h"
 #include "server/http/app/problems.h"
 
 namespace tunewright::server {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "api/report/columns.h"
+#include "api/report/terminal/columns.h"
 #include "engine/number_text.h"
 
 namespace tunewright::server {

@@ -7,10 +7,10 @@
 
 #include "api/batch/multipart.h"
 #include "api/batch/plant_checks.h"
-#include "api/check_service.h"
 #include "api/csv/time_stamp.h"
 #include "api/json/json.h"
 #include "api/json/utf8.h"
+#include "api/services/check_service.h"
 #include "server/http/app/negotiation.h"
 #include "server/http/app/problems.h"
 #include "server/jobs/await.h"

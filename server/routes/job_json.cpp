@@ -128,12 +128,14 @@ std::string job_news_json(const JobView& view) {
     return std::move(object).str();
 }
 
-std::string notification_job_json(JobRecord job) {
+JobRecord without_traces(JobRecord job) {
     job.request = api::without_members(job.request, {"record"});
     job.result = api::without_members(job.result, {"responses", "frequency", "fit", "y_model"});
     job.error = api::without_members(job.error, {"record"});
-    return job_json({std::move(job), std::nullopt});
+    return job;
 }
+
+std::string notification_job_json(JobRecord job) { return job_json({without_traces(std::move(job)), std::nullopt}); }
 
 std::string job_page_json(const JobPage& page, const JobQuery& query, bool with_owners) {
     std::string list = "[";

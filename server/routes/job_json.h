@@ -17,6 +17,9 @@ std::string job_json(const JobView& view);
 /// A job without request and result.
 std::string job_news_json(const JobView& view);
 
+/// The job without the samples of its record and without the traces of its result, which may be megabytes.
+JobRecord without_traces(JobRecord job);
+
 /// A job with request and result but without traces: the content of a notification.
 std::string notification_job_json(JobRecord job);
 

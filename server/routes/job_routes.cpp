@@ -8,6 +8,7 @@
 #include "server/jobs/await.h"
 #include "server/routes/job_access.h"
 #include "server/routes/job_json.h"
+#include "server/routes/job_submission.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 
@@ -29,35 +30,10 @@ Response job_response(JobService& jobs, ComputeSlots& readers, const http::Reque
     });
 }
 
-Response queue_full(const JobService& jobs, bool of_client = false) {
-    const int seconds = jobs.seconds_until_room();
-    api::Problem problem = http::problem(429, "The queue of jobs is full.");
-    if (of_client) {
-        problem.type = "too-many-jobs";
-        problem.detail = "This client has " + std::to_string(jobs.client_jobs()) +
-                         " jobs that wait or run, the limit of this service. Wait for the end of one, cancel one, or "
-                         "post many as a batch.";
-    }
-    problem.detail += " Try again in " + std::to_string(seconds) + " s (Retry-After).";
-    return problem_response(problem, std::chrono::seconds(seconds));
-}
-
 Response submitted(const JobService& jobs, const Submission& submission) {
-    switch (submission.kind) {
-        case Submission::Kind::created: {
-            Response response = http::json_response(job_json({submission.job, std::nullopt}), 202);
-            return response.set("Location", "/v1/jobs/" + submission.job.id);
-        }
-        case Submission::Kind::conflict:
-            return problem_response(409, "This Idempotency-Key was used before with another request. Use a new key.");
-        case Submission::Kind::queue_full: return queue_full(jobs);
-        case Submission::Kind::too_many: return queue_full(jobs, true);
-        case Submission::Kind::draining:
-            return problem_response(503, "The service is being stopped and accepts no more jobs. Try again shortly.");
-        case Submission::Kind::existing:
-        case Submission::Kind::store_failed: break;
-    }
-    return store_failed(submission.fault);
+    if (auto refusal = refuse_submission(jobs, submission)) return *std::move(refusal);
+    Response response = http::json_response(job_json({submission.job, std::nullopt}), 202);
+    return response.set("Location", "/v1/jobs/" + submission.job.id);
 }
 
 /// The answer after a wait: 200 with the job if it has ended, otherwise 202, as without a wait.
@@ -89,33 +65,6 @@ Response after_wait(JobService& jobs, ComputeSlots& readers, const http::Request
         return store_failed({error.kind, error.what()});
     }
     return waited(jobs, readers, request, id, wait);
-}
-
-/// The result of an order: the job as accepted and, if the call waited for it and it ended here, as ended.
-struct Submitted {
-    Submission submission;
-    std::shared_ptr<const JobRecord> ended;
-};
-
-/// If the order has a wait, creation and wait are one call of the service, so that this thread wakes once. The room of
-/// the request is released in between, when the store has answered. Empty if the client has disconnected meanwhile.
-std::optional<Submitted> submit(JobService& jobs, Order order, const http::Request& call) {
-    const bool waits = order.wait.count() > 0;
-    const auto made = std::make_shared<Submitted>();
-    const auto accept = [&](const std::function<void()>& wake) {
-        const auto done = [made, waits, wake, keep = call.keep](Submission submission) {
-            if (waits) std::string().swap(submission.job.request);
-            made->submission = std::move(submission);
-            if (keep) keep(0);
-            if (!waits || made->submission.kind != Submission::Kind::created) wake();
-        };
-        jobs.submit(std::move(order), done, [made, wake](const std::shared_ptr<const JobRecord>& job) {
-            made->ended = job;
-            wake();
-        });
-    };
-    if (!await_end(accept, waits ? call.left : nullptr)) return std::nullopt;
-    return std::move(*made);
 }
 
 std::optional<Response> refuse_parameters(const http::Request& request) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <stop_token>
 #include <string>
 
 #include "server/access/compute_slots.h"
@@ -13,9 +12,8 @@
 #include "server/jobs/service.h"
 #include "server/metrics/memory.h"
 #include "server/notify/policy.h"
+#include "server/routes/computations.h"
 #include "server/threads/executor.h"
-#include "server/threads/spare_cores.h"
-#include "server/threads/timer.h"
 
 namespace tunewright::server {
 
@@ -57,9 +55,13 @@ void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, 
 
 /// /v1/evaluate, /v1/design, /v1/frontier, /v1/range, /v1/check, /v1/verify, /v1/identify, /v1/experiments/... and the
 /// conversions below /v1/controllers, and the certificates of /v1/jobs/{id}/controllers/{index}: computed while the
-/// client waits, when its turn has come, with a deadline, or until `closing`. /v1/plants/parse: at once.
-void add_synchronous_routes(http::Router& router, JobService& jobs, ComputeSlots& turns, Timer& timer,
-                            SpareCores& spare_cores, const std::stop_token& closing);
+/// client waits. /v1/plants/parse: at once.
+void add_synchronous_routes(http::Router& router, JobService& jobs, const Computations& computations);
+
+/// POST /mcp: the Model Context Protocol. Its tools compute in the same turns as the calls, and its jobs wait in the
+/// same places.
+void add_mcp_routes(http::Router& router, JobService& jobs, LongRequestSlots& places, const SharedTurns& turns,
+                    const Computations& computations, const api::JobLimits& limits);
 
 /// /v1/methods, /v1/controllers, /v1/examples, /openapi.json: constant for the life of the process.
 void add_description_routes(http::Router& router);

@@ -1,23 +1,17 @@
-#include <algorithm>
-#include <atomic>
+#include <chrono>
 #include <functional>
-#include <memory>
-#include <mutex>
-#include <stop_token>
-
-#include <fmt/format.h>
 
 #include "api/certificate/certificate_call.h"
-#include "api/check_service.h"
 #include "api/registries.h"
 #include "api/service.h"
+#include "api/services/check_service.h"
 #include "api/services/range_service.h"
 #include "api/services/score_service.h"
 #include "api/services/structure_service.h"
 #include "api/services/verify/verify_call.h"
-#include "server/clock.h"
 #include "server/http/app/negotiation.h"
 #include "server/http/app/problems.h"
+#include "server/routes/computations.h"
 #include "server/routes/job_access.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
@@ -43,89 +37,11 @@ constexpr std::chrono::seconds kVerifyTime{60};
 constexpr std::chrono::seconds kRelayTime{10};
 constexpr std::chrono::seconds kConversionTime{10};
 constexpr std::chrono::seconds kCertificateTime{120};
-constexpr std::chrono::milliseconds kGonePollInterval{250};  // between checks for clients that have disconnected
 
 bool is_file(const http::Request& request) {
     const std::string type = http::media_type(request);
     return type == "text/csv" || type == "application/csv" || type == "text/tab-separated-values" ||
            type == "text/plain" || type == "application/octet-stream";
-}
-
-Response too_slow(std::chrono::seconds limit) {
-    Error error;
-    error.kind = ErrorKind::timeout;
-    error.message = "The computation was stopped after " + std::to_string(limit.count()) +
-                    " s. Reduce the request, or post it as a job, which may take longer.";
-    return http::problem_response(api::to_problem(error));
-}
-
-/// The answer to a call that was never begun.
-Response too_busy(std::chrono::seconds limit) {
-    return problem_response(
-        503,
-        "The service was busy with other computations for " + std::to_string(limit.count()) +
-            " s, and this one was not started. Try again in a moment, or post it as a job, which waits for its turn.");
-}
-
-Response closing_down() { return problem_response(503, "The service is being stopped. Try again shortly."); }
-
-/// Stops a computation at its deadline, when the service stops, or when its client has disconnected.
-class ComputationWatchdog : public std::enable_shared_from_this<ComputationWatchdog> {
-public:
-    ComputationWatchdog(Timer& timer, ComputeSlots::Clock::time_point deadline, std::function<bool()> left)
-        : timer_(timer), deadline_(deadline), left_(std::move(left)) {}
-
-    void look() {
-        const std::lock_guard lock(mutex_);
-        if (over_) return;
-        gone_ = left_ && left_();
-        if (gone_ || ComputeSlots::Clock::now() >= deadline_) return stop();
-        look_later();
-    }
-    /// Short computations are not watched: the first check comes after a while.
-    void look_later() {
-        const std::chrono::duration<double> rest = deadline_ - ComputeSlots::Clock::now();
-        timer_.after(std::min<std::chrono::duration<double>>(kGonePollInterval, rest),
-                     [self = shared_from_this()] { self->look(); });
-    }
-    void stop() { stop_.request_stop(); }
-    /// From now on the client is not checked.
-    void end() {
-        const std::lock_guard lock(mutex_);
-        over_ = true;
-    }
-    /// True if it was stopped because the client has disconnected.
-    bool gone() const { return gone_; }
-    std::stop_token token() const { return stop_.get_token(); }
-
-private:
-    Timer& timer_;
-    const ComputeSlots::Clock::time_point deadline_;
-    const std::function<bool()> left_;
-    std::stop_source stop_;
-    std::mutex mutex_;
-    bool over_ = false;
-    std::atomic<bool> gone_ = false;
-};
-
-/// The answer of `work`, which runs on this thread when its turn has come.
-Response compute(const SyncCall& work, const Call& call, std::chrono::seconds limit, SpareCores& spare_cores,
-                 const std::shared_ptr<ComputationWatchdog>& watchdog, const std::stop_token& closing) {
-    const std::stop_callback on_closing(closing, [watchdog] { watchdog->stop(); });
-    RunControl control;
-    control.stop = watchdog->token();
-    control.now_ms = monotonic_ms;
-    SpareCores::Computation computation(spare_cores);
-    control.spread = computation.spread();
-    const double start = monotonic_ms();
-    api::Answer answer = work(call, control);
-    if (answer.status >= 400 && closing.stop_requested()) return closing_down();
-    if (answer.status >= 400 && watchdog->gone()) return client_gone();
-    if (answer.status >= 400 && control.stop.stop_requested()) return too_slow(limit);
-
-    Response response = response_of(std::move(answer));
-    response.set("Server-Timing", fmt::format("compute;dur={:.2f}", monotonic_ms() - start));
-    return response;
 }
 
 /// The body is a file of a recorded test, or JSON that contains it.
@@ -140,26 +56,11 @@ api::Answer preview(const Call& call, const RunControl&) {
 }
 
 /// The time limit counts from the arrival of the request, including the wait for its turn.
-http::Handler synchronous(const SyncCall& work, std::chrono::seconds limit, ComputeSlots& turns, Timer& timer,
-                          SpareCores& spare_cores, const std::stop_token& closing, Refusal refuse) {
-    return [=, &turns, &timer, &spare_cores](const Call& call) {
-        const auto deadline = ComputeSlots::Clock::now() + limit;
+http::Handler synchronous(const SyncCall& work, std::chrono::seconds limit, const Computations& computations,
+                          Refusal refuse) {
+    return [=](const Call& call) {
         if (auto refusal = refuse(call.request)) return *std::move(refusal);
-        if (closing.stop_requested()) return closing_down();
-        switch (turns.take(call.request.client, deadline, call.request.left)) {
-            case ComputeSlots::Wait::full:
-                return problem_response(429, "Too many computations are waiting. Try again after a moment.");
-            case ComputeSlots::Wait::late: return too_busy(limit);
-            case ComputeSlots::Wait::left: return client_gone();
-            case ComputeSlots::Wait::granted: break;
-        }
-        const auto watchdog = std::make_shared<ComputationWatchdog>(timer, deadline, call.request.left);
-        watchdog->look_later();
-        const std::shared_ptr<void> ended(nullptr, [&, client = call.request.client](void*) {
-            watchdog->end();
-            turns.give_back(client);
-        });
-        return compute(work, call, limit, spare_cores, watchdog, closing);
+        return computations.answer(call.request, limit, [&](const RunControl& control) { return work(call, control); });
     };
 }
 
@@ -204,18 +105,17 @@ Response parse_plant(const Call& call) {
 
 }  // namespace
 
-void add_synchronous_routes(http::Router& router, JobService& jobs, ComputeSlots& turns, Timer& timer,
-                            SpareCores& spare_cores, const std::stop_token& closing) {
+void add_synchronous_routes(http::Router& router, JobService& jobs, const Computations& computations) {
     const auto add = [&](const char* path, const SyncCall& work, std::chrono::seconds limit,
                          Refusal refuse = refuse_call) {
-        router.add("POST", path, synchronous(work, limit, turns, timer, spare_cores, closing, refuse));
+        router.add("POST", path, synchronous(work, limit, computations, refuse));
     };
     const auto certificate = [&jobs](const Call& call, const RunControl& control) {
         return certificate_of(jobs, call, control);
     };
     router.add("GET", "/v1/jobs/{id}/controllers/{index}/certificate",
-               as_file(synchronous(certificate, kCertificateTime, turns, timer, spare_cores, closing, no_body),
-                       api::kCertificateMediaType, "certificate.jsonl"));
+               as_file(synchronous(certificate, kCertificateTime, computations, no_body), api::kCertificateMediaType,
+                       "certificate.jsonl"));
     router.add("POST", "/v1/plants/parse", parse_plant);
     add("/v1/evaluate", of_body(api::evaluate_call), kEvaluateTime);
     add("/v1/design", of_body(api::design_call), kDesignTime);

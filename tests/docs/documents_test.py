@@ -9,7 +9,7 @@ import service
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = ["README.md"] + [f"docs/{name}.md" for name in (
-    "api", "batches", "check", "code", "command-line", "controllers", "interoperability", "jobs", "live", "nonlinear",
+    "api", "batches", "check", "code", "command-line", "controllers", "interoperability", "jobs", "live", "mcp", "nonlinear",
     "plants", "range", "records", "relay", "report", "structures", "tutorial", "uncertain")]
 
 

@@ -69,10 +69,10 @@ ROOMS = {
         "outline": {"contract", "json"},
         "shorthand": {"contract", "csv", "json"},
         "registries": {"outcome", "contract", "describe", "formula"},
-        "services": {"outcome", "certificate", "chosen_entry", "code", "contract", "csv", "describe", "json"},
-        "check_service": {"outcome", "services", "contract", "historian", "csv", "describe", "json"},
-        "service": {"outcome", "outline", "services", "check_service", "shorthand", "contract", "describe", "json"},
+        "services": {"outcome", "certificate", "chosen_entry", "code", "contract", "csv", "describe", "historian", "json"},
+        "service": {"outcome", "outline", "services", "shorthand", "contract", "describe", "json"},
         "batch": {"service", "contract", "historian", "csv", "describe", "json"},
+        "mcp": {"outcome", "service", "code", "report", "registries", "contract", "describe", "json"},
     },
     "server": {
         "top": set(),

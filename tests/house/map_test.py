@@ -24,6 +24,7 @@ FAMILIES = {
     "engine/request/verdict/*.cpp": ("engine/request/verdict/findings.h", "findings, a subject each"),
     "api/contract/reports/*.cpp": ("api/contract/reports/reports.h", "descriptions, a report each"),
     "api/csv/shape/*.cpp": ("api/csv/shape/shapes.h", "a layout of files each"),
+    "api/mcp/tools/*_tools.cpp": ("api/mcp/tools.h", "tools, a subject each"),
     "api/report/*.cpp": ("api/report/sections.h", "sections of the report"),
     "server/cli/*.cpp": ("server/cli/command_tree.h", "commands, a group each"),
     "server/routes/*_routes.cpp": ("server/routes/routes.h", "routes, a kind of call each"),

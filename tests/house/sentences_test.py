@@ -41,7 +41,7 @@ NAMED = (
 # Writers: their use of a sentence, and the number of uses.
 WRITERS = {
     "api/describe/members.cpp": (2, "takes the first sentence of a member's description"),
-    "api/report/terminal.cpp": (1, "names the file in place of the body in a problem for the terminal"),
+    "api/report/terminal/terminal.cpp": (1, "names the file in place of the body in a problem for the terminal"),
     "web/src/form/errors.ts": (2, "writes the page's labels in place of the names of members"),
     "web/src/range/result_cards.ts": (1, "sets the first sentence of a verdict as its heading"),
     "web/src/views/cards/verdict_card.ts": (1, "leaves out a fault that repeats the problem's own sentence"),

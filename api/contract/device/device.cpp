@@ -1,5 +1,6 @@
 #include "api/contract/device/device.h"
 
+#include "api/contract/product/meant_product.h"
 #include "api/contract/product/product.h"
 #include "api/contract/result/evaluation.h"
 #include "api/csv/time_stamp.h"
@@ -77,12 +78,10 @@ namespace {
 // Null if the id is unknown; the reader then has the fault.
 const product::Product* product_of(const std::string& id, Reader& reader) {
     if (const auto* product = product::find(id)) return product;
-    std::vector<std::string> ids;
-    for (const product::Product& product : product::catalogue()) ids.emplace_back(product.id);
-    const std::string meant = nearest(id, ids);
+    const std::string meant = meant_product(id);
     reader.fault_at("product", "product is \"" + id +
                                    "\", which is not in the catalogue; GET /v1/controllers lists it." +
-                                   (meant.empty() ? "" : " Did you mean " + meant + "?"));
+                                   (meant.empty() ? "" : " " + meant));
     return nullptr;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "api/batch/plant_checks.h"
-#include "api/check_service.h"
+#include "api/services/check_service.h"
 #include "engine/check/together/plant_check.h"
 #include "engine/number_text.h"
 #include "tests/api/support.h"

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
-#include "api/check_service.h"
 #include "api/historian/loop_request.h"
 #include "api/json/json.h"
 #include "api/service.h"
+#include "api/services/check_service.h"
 #include "tests/api/historian/recorded_plant.h"
 
 namespace tunewright::api {

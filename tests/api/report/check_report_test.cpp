@@ -10,7 +10,7 @@
 #include "api/json/json.h"
 #include "api/report/check_words.h"
 #include "api/report/report.h"
-#include "api/report/terminal.h"
+#include "api/report/terminal/terminal.h"
 
 namespace tunewright::api {
 namespace {

@@ -11,7 +11,7 @@
 #include "api/code/structure_program.h"
 #include "api/report/report.h"
 #include "api/report/structure/structure_words.h"
-#include "api/report/terminal.h"
+#include "api/report/terminal/terminal.h"
 #include "api/service.h"
 #include "api/services/structure_service.h"
 #include "engine/structure/conclusions.h"

@@ -1,6 +1,7 @@
 // Output for a person on a terminal instead of an answer's JSON: short tables, sentences, and responses in dots.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -11,8 +12,15 @@
 namespace tunewright::api {
 
 /// A result of tune: its model if a record was given, a row for each controller in the order of the ranking with
-/// settings, Ms, Mt and load IAE, and the verdict on the best. Any other text is returned unchanged.
+/// settings, Ms, Mt and load IAE, and of the best the verdict and the settings of its product. Any other text is
+/// returned unchanged.
 std::string result_text(std::string_view result);
+/// The same with the first rows alone.
+std::string shortened_result_text(std::string_view result, std::size_t max_rows);
+
+/// The settings of a product with their units, and the deviations from the design: of an answer of settings, or of an
+/// entry's `as_entered`. Any other text is returned unchanged.
+std::string settings_text(std::string_view entered);
 
 /// A result about a range: one setting, the schedule's rows with their figures, the worst over the range, the areas of
 /// the runs and the verdict. Any other text is returned unchanged.

@@ -1,7 +1,8 @@
-#include "api/report/terminal.h"
+#include "api/report/terminal/terminal.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,24 +11,18 @@
 #include "api/json/json.h"
 #include "api/json/utf8.h"
 #include "api/report/check_words.h"
-#include "api/report/columns.h"
 #include "api/report/figures.h"
 #include "api/report/plot.h"
 #include "api/report/sections.h"
 #include "api/report/structure/structure_words.h"
+#include "api/report/terminal/columns.h"
+#include "api/report/terminal/entry_rows.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {
 namespace {
 
 constexpr const char* kNoValue = "-";
-constexpr std::size_t kWidestTitle = 44;
-
-/// The member at a path such as "/performance/load/IAE"; null where there is none.
-Json at(const Json& value, const char* pointer) {
-    const Json::json_pointer where(pointer);
-    return value.contains(where) ? value.at(where) : Json();
-}
 
 std::string number(const Json& value) { return value.is_number() ? tunewright::text(value.get<double>()) : kNoValue; }
 std::string words(const Json& value) { return value.is_string() ? value.get<std::string>() : ""; }
@@ -71,8 +66,8 @@ std::string parameters(const Json& model) {
 }
 
 std::string model_lines(const Json& model) {
-    std::string out =
-        "Model " + words(at(model, "/plant/type")) + ", fit " + number(model.value("fit_percent", Json())) + " %";
+    std::string out = "Model " + words(member_at(model, "/plant/type")) + ", fit " +
+                      number(model.value("fit_percent", Json())) + " %";
     const std::string values = parameters(model);
     if (!values.empty()) out += ": " + values;
     const std::string grade =
@@ -81,58 +76,44 @@ std::string model_lines(const Json& model) {
            sentences(model.value("warnings", Json::array()), "message");
 }
 
-std::vector<std::size_t> order_of(const Json& result) {
-    const std::size_t count = result.at("controllers").size();
-    std::vector<std::size_t> order;
-    for (const Json& place : result.value("ranking", Json::array()))
-        if (place.is_number_unsigned() && place.get<std::size_t>() < count) order.push_back(place.get<std::size_t>());
-    for (std::size_t i = 0; i < count; ++i)
-        if (std::find(order.begin(), order.end(), i) == order.end()) order.push_back(i);
-    return order;
-}
-
-std::string title_of(const Json& entry) {
-    std::string title = words(entry.value("title", Json()));
-    if (title.empty()) title = words(entry.value("method", Json()));
-    if (letters(title) > kWidestTitle) title = std::string(whole_characters(title, kWidestTitle - 3)) + "...";
-    return title;
-}
-
-std::string level_of(const Json& entry) {
-    const Json first = at(entry, "/verdict/0/level");
-    return first.is_string() ? first.get<std::string>() : kNoValue;
-}
-
-std::string table_of(const Json& result, const std::string& time, std::size_t& refused) {
-    const auto timed = [&](const char* name) { return std::string(name) + " (" + time + ")"; };
-    Columns columns({"method", "controller", "Kp", timed("Ti"), timed("Td"), "Ms", "Mt", "load IAE", "verdict"}, 2);
-    for (const std::size_t place : order_of(result)) {
-        const Json& entry = result.at("controllers").at(place);
-        if (!entry.contains("controller")) {
-            ++refused;
-            continue;
-        }
-        const Json Ti = at(entry, "/controller/Ti");
-        columns.row({words(entry.value("method", Json())), title_of(entry), number(at(entry, "/controller/Kp")),
-                     number(Ti), number(at(entry, "/controller/Td")), number(at(entry, "/robustness/Ms")),
-                     number(at(entry, "/robustness/Mt")), number(at(entry, "/performance/load/IAE")), level_of(entry)});
+std::string table_of(const EntryRows& found, const std::string& time, std::size_t max_rows) {
+    std::vector<std::string> heads{"method", "controller"};
+    for (const EntryFigure& figure : kEntryFigures)
+        heads.push_back(std::string(figure.name) + (figure.is_time ? " (" + time + ")" : ""));
+    heads.emplace_back("verdict");
+    Columns columns(std::move(heads), 2);
+    for (std::size_t i = 0; i < std::min(max_rows, found.rows.size()); ++i) {
+        const EntryRow& row = found.rows[i];
+        std::vector<std::string> cells{row.method, row.title};
+        for (const Json& figure : row.figures) cells.push_back(number(figure));
+        cells.push_back(row.level);
+        columns.row(std::move(cells));
     }
     return columns.text();
 }
 
-std::string text_of_result(const Json& result, const std::string& time) {
+/// The settings to type into the product of an entry, and what the product cannot do.
+std::string typed_settings(const Json& entry) {
+    const Json entered = entry.value("as_entered", Json());
+    return entered.is_object() ? settings_text(entered.dump()) : "";
+}
+
+std::string text_of_result(const Json& result, const std::string& time, std::size_t max_rows) {
     std::string out;
     if (result.contains("model")) out += model_lines(result.at("model")) + "\n";
-    std::size_t refused = 0;
-    out += table_of(result, time, refused);
-    if (refused > 0)
-        out += std::to_string(refused) + (refused == 1 ? " method has" : " methods have") +
-               " no result on this plant; the JSON (--pretty) has the reasons.\n";
-    const std::vector<std::size_t> order = order_of(result);
+    const EntryRows found = entry_rows(result);
+    out += table_of(found, time, max_rows);
+    if (found.rows.size() > max_rows)
+        out += std::to_string(found.rows.size() - max_rows) + " more, in the whole answer.\n";
+    if (found.without_controller > 0)
+        out += std::to_string(found.without_controller) +
+               (found.without_controller == 1 ? " method has" : " methods have") +
+               " no result on this plant; the whole answer, in JSON, has the reasons.\n";
+    const std::vector<std::size_t> order = entry_order(result);
     if (order.empty()) return out;
     const Json& best = result.at("controllers").at(order[0]);
-    out += "\n" + title_of(best) + ":\n" + sentences(best.value("verdict", Json::array()), "text");
-    return out + sentences(best.value("warnings", Json::array()), "message");
+    out += "\n" + entry_title(best) + ":\n" + sentences(best.value("verdict", Json::array()), "text");
+    return out + sentences(best.value("warnings", Json::array()), "message") + typed_settings(best);
 }
 
 std::string listing(std::string_view answer, const char* member,
@@ -151,11 +132,30 @@ std::string listing(std::string_view answer, const char* member,
 
 }  // namespace
 
-std::string result_text(std::string_view result) try {
+std::string settings_text(std::string_view entered) try {
+    const Json value = parsed_or_null(entered);
+    std::string out;
+    for (const auto& [name, typed] : value.at("as_typed").items()) {
+        const std::string unit = words(value.value("units", Json::object()).value(name, Json()));
+        out += (out.empty() ? "" : ", ") + name + " " + words(typed) + (unit.empty() ? "" : " " + unit);
+    }
+    out = "Settings of " + words(value.at("product")) + ": " + out + "\n";
+    for (const Json& note : value.value("notes", Json::array()))
+        if (note.value("deviation", false)) out += "  " + words(note.value("detail", Json())) + "\n";
+    return out;
+} catch (const Json::exception&) {
+    return std::string(entered) + "\n";
+}
+
+std::string result_text(std::string_view result) {
+    return shortened_result_text(result, std::numeric_limits<std::size_t>::max());
+}
+
+std::string shortened_result_text(std::string_view result, std::size_t max_rows) try {
     const Json value = parsed_or_null(result);
     if (value.contains("range")) return range_text(result);
-    const std::string time = words(at(value, "/units/time"));
-    return text_of_result(value, time.empty() ? "s" : time);
+    const std::string time = words(member_at(value, "/units/time"));
+    return text_of_result(value, time.empty() ? "s" : time, max_rows);
 } catch (const Json::exception&) {
     return std::string(result) + "\n";
 }
@@ -168,7 +168,7 @@ std::string model_text(std::string_view answer) try {
     if (!reason.empty()) out += "  " + reason + "\n";
     Columns columns({"candidate", "fit (%)", "parameters"}, 3);
     for (const Json& candidate : model.value("candidates", Json::array()))
-        columns.row({words(at(candidate, "/plant/type")), number(candidate.value("fit_percent", Json())),
+        columns.row({words(member_at(candidate, "/plant/type")), number(candidate.value("fit_percent", Json())),
                      parameters(candidate)});
     return out + "\n" + columns.text();
 } catch (const Json::exception&) {
@@ -407,7 +407,7 @@ std::string remarks_of(const Json& answer, const std::vector<std::size_t>& order
     std::string out;
     for (const std::size_t place : order) {
         const Json& loop = answer.at("loops").at(place);
-        const std::string found = sentences(at(loop, "/quality/remarks"), "detail");
+        const std::string found = sentences(member_at(loop, "/quality/remarks"), "detail");
         if (!found.empty()) out += words(member_of(loop, "tag")) + "\n" + found;
     }
     return out.empty() ? "" : "\nOn the records:\n" + out;
@@ -427,12 +427,13 @@ std::string reasons_of(const Json& answer, const std::vector<std::size_t>& order
         }
         out += "\n" + words(member_of(loop, "tag")) + "\n" + sentences(evidence, "detail");
         for (const char* part : {"/cause/why_open", "/action/detail", "/cure/detail"})
-            if (const std::string sentence = words(at(loop, part)); !sentence.empty()) out += "  " + sentence + "\n";
-        out += sentences(at(loop, "/cure/valve/stops"), "detail");
+            if (const std::string sentence = words(member_at(loop, part)); !sentence.empty())
+                out += "  " + sentence + "\n";
+        out += sentences(member_at(loop, "/cure/valve/stops"), "detail");
     }
     if (more > 0)
         out += "\n" + std::to_string(more) + (more == 1 ? " more loop needs" : " more loops need") +
-               " work; the JSON (--pretty) has the evidence.\n";
+               " work; the whole answer, in JSON, has the evidence.\n";
     return out;
 }
 
@@ -445,9 +446,10 @@ std::string structure_text(std::string_view answer) try {
     if (const auto controllers = structure_controllers(value); !controllers.empty()) {
         Columns table({"controller", "Kp", "Ti", "Td", "Tf"}, 1);
         for (const auto& [name, pointer] : controllers)
-            table.row({name, number(at(value, (pointer + "/Kp").c_str())), number(at(value, (pointer + "/Ti").c_str())),
-                       number(at(value, (pointer + "/Td").c_str())),
-                       number(at(value, (pointer + "/filter/Tf").c_str()))});
+            table.row({name, number(member_at(value, (pointer + "/Kp").c_str())),
+                       number(member_at(value, (pointer + "/Ti").c_str())),
+                       number(member_at(value, (pointer + "/Td").c_str())),
+                       number(member_at(value, (pointer + "/filter/Tf").c_str()))});
         out += table.text() + "\n";
     }
     if (const Json design = value.value("design", Json()); design.is_object())
@@ -457,8 +459,8 @@ std::string structure_text(std::string_view answer) try {
         if (const Json::json_pointer place(one.pointer); value.contains(place))
             figures.row({one.name, number(value.at(place))});
     out += figures.text() + "\n";
-    const std::string label = words(at(value, "/units/time"));
-    const StructureUnits units{label.empty() ? "s" : label, words(at(value, "/units/y"))};
+    const std::string label = words(member_at(value, "/units/time"));
+    const StructureUnits units{label.empty() ? "s" : label, words(member_at(value, "/units/y"))};
     for (const Json& conclusion : value.value("verdict", Json::array()))
         out += conclusion_sentence(conclusion, units) + "\n";
     return out;

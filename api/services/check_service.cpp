@@ -1,4 +1,4 @@
-#include "api/check_service.h"
+#include "api/services/check_service.h"
 
 #include <algorithm>
 #include <utility>

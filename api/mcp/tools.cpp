@@ -40,7 +40,7 @@ const std::vector<Tool>& tools() {
     static const std::vector<Tool> all{tune_tool(),     identify_tool(),      check_record_tool(),
                                        compare_tool(),  evaluate_tool(),      plan_relay_test_tool(),
                                        settings_tool(), list_products_tool(), list_methods_tool(),
-                                       code_tool(),     job_status_tool()};
+                                       code_tool(),     test_program_tool(),  job_status_tool()};
     return all;
 }
 

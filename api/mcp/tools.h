@@ -20,6 +20,7 @@ Tool settings_tool();
 Tool list_products_tool();
 Tool list_methods_tool();
 Tool code_tool();
+Tool test_program_tool();
 Tool job_status_tool();
 
 const std::vector<Tool>& tools();

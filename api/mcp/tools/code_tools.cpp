@@ -1,6 +1,8 @@
-// Controllers as programs.
+// Controllers, and tests that a controller runs by itself, as programs.
 #include "api/code/code.h"
+#include "api/code/experiment_code.h"
 #include "api/contract/device/code_question.h"
+#include "api/contract/device/experiment_question.h"
 #include "api/describe/body.h"
 #include "api/describe/suggest.h"
 #include "api/mcp/tools.h"
@@ -72,14 +74,26 @@ ToolOutcome code(const Json& arguments, ToolHost& host) {
     return subject.job ? code_of_job(subject, parts.words, host) : written({result_of(parts.subject)}, "", parts.words);
 }
 
+Json test_arguments(ShownTypes& shown) {
+    return tool_schema([](SchemaBook& book) { return experiment_contract().schema(book); }, shown);
+}
+
+ToolOutcome test_program(const Json& arguments, ToolHost&) {
+    auto code = experiment_code(arguments.dump());
+    if (const auto* problem = std::get_if<Problem>(&code)) return refused(*problem);
+    return ToolAnswer{std::move(std::get<ControllerCode>(code).text), nullptr};
+}
+
 }  // namespace
 
 Tool code_tool() {
     return {.name = "code",
             .title = "Controller as a program",
             .description =
-                "The controller of a job, or a given one, as source text: Structured Text (st), C or Python, with "
-                "limits, anti-windup, bumpless manual/automatic. Use it when the controller is not a product's block. "
+                "The controller of a job, or a given one, as source text: Structured Text (st), C, Python or a sketch "
+                "for an "
+                "Arduino, with limits, anti-windup, bumpless manual/automatic. Use it when the controller is not a "
+                "product's block. "
                 "sample_time in units.time; u_min and u_max are the ends of the actuator.",
             .example =
                 R"json({"controller": {"form": "ideal", "Kp": 0.84, "Ti": 5.7, "Td": 1.3}, "language": "st", )json"
@@ -87,6 +101,22 @@ Tool code_tool() {
             .makes_job = false,
             .arguments = code_arguments,
             .call = code};
+}
+
+Tool test_program_tool() {
+    return {
+        .name = "test_program",
+        .title = "A test that a controller runs by itself",
+        .description =
+            "A relay test, or a step and back (bump), as source text for the plant's own controller. It measures the "
+            "noise, stays within limits of u, y, rate and time, ends by itself, has a safe u for every fault, and "
+            "writes rows t, u, y for identify. Use it when there is no record yet. Times in s. It is text: nothing "
+            "is run.",
+        .example = R"json({"experiment": "relay", "language": "st", "sample_time": 0.5, "u_step": 5, )json"
+                   R"json("u_min": 0, "u_max": 100, "y_min": 20, "y_max": 80})json",
+        .makes_job = false,
+        .arguments = test_arguments,
+        .call = test_program};
 }
 
 }  // namespace tunewright::api::mcp

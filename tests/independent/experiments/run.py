@@ -5,7 +5,7 @@ and do settings from their record hold Ms on the true plant?
     tests/independent/experiments/run.py [--binary FILE] [--experiment relay] [--seed 1] [--Ms 1.4] [--keep FOLDER]
     tests/independent/experiments/run.py --client [...]
 
---client: through autotune of the Python client, with a service that is killed and started again every four seconds.
+--client: through autotune of the Python client, with a service that is killed and started again every ten seconds.
 
 Prints a line for each plant, then counts; exit code 1 if a test did not end or broke a limit, or if fewer than 95 % of the
 settings hold Ms within 1.25 times the limit."""
@@ -58,7 +58,7 @@ def simulate(test, plant, Ts, case, size, chance, most=6000):
 
 
 class RestartedService:
-    """A service on one port and one store that is killed and started again every four seconds, and a client of it."""
+    """A service on one port and one store that is killed and started again every ten seconds, and a client of it."""
 
     def __init__(self, binary, folder):
         with socket.socket() as free:
@@ -78,7 +78,7 @@ class RestartedService:
         self.process.stdout.readline()
 
     def restart(self):
-        while not self.over.wait(4.0):
+        while not self.over.wait(10.0):
             self.process.kill()
             self.process.wait()
             self.kills += 1

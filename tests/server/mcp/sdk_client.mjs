@@ -33,6 +33,7 @@ const calls = [
   ["list_products", { search: "deltav" }],
   ["list_methods", {}],
   ["code", { controller, language: "c", sample_time: 0.5 }],
+  ["test_program", { experiment: "relay", language: "st", sample_time: 0.5, u_step: 5 }],
   ["job_status", {}],
 ];
 

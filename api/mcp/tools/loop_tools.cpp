@@ -81,7 +81,7 @@ Tool plan_relay_test_tool() {
                 "person runs the test; it runs nothing itself. Give noise_std, the standard deviation of the "
                 "measurement, to get a hysteresis.",
             .example =
-                R"json({"plant": "2 e^(-3s)/(10s+1)", "relay": {"u_plus": 1, "u_minus": -1, "noise_std": 0.05}})json",
+                R"json({"plant": "2 e^(-3s)/(10s+1)", "relay": {"u_plus": 1, "u_minus": -1}})json",
             .makes_job = false,
             .arguments =
                 [](ShownTypes& shown) {

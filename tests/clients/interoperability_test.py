@@ -326,7 +326,7 @@ class AnswersTest(unittest.TestCase):
 
     def test_answers_of_every_call_show_themselves(self):
         for answer in (self.client.evaluate(FOPDT, ["pidstd(0.5, 20)"]), self.client.design(FOPDT, "simc")):
-            self.assertIn("<table>", answer._repr_html_())
+            self.assertIn("<table", answer._repr_html_())
             self.assertEqual(json.loads(json.dumps(answer)), dict(answer))
         Fragment(tunewright.Answer({})._repr_html_())
         with self.assertRaisesRegex(TypeError, "neither controllers nor loops"):

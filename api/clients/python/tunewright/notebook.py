@@ -5,7 +5,7 @@ Figures and sentences are those of the answer. Every text in the HTML is escaped
 
 from html import escape
 from math import ceil, floor, isfinite, log10
-from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from .tables import Table, table
 
@@ -47,16 +47,24 @@ def _model(answer: Json) -> str:
 
 
 def _table(of: Table) -> str:
-    heads = "".join('<th style="%s">%s</th>' % (_CELL % "right", escape(each)) for each in of.columns)
-    rows = ["".join(_cell(cell) for cell in row) for row in of.rows]
-    return "<table><thead><tr>%s</tr></thead><tbody>%s</tbody></table>" % (
-        heads, "".join("<tr>%s</tr>" % row for row in rows))
+    heads = "".join('<th style="%s">%s</th>' % (_CELL % _side(row[i] for row in of.rows), escape(heading))
+                    for i, heading in enumerate(of.columns))
+    rows = "".join("<tr>%s</tr>" % "".join(map(_cell, row)) for row in of.rows)
+    return ('<div style="overflow-x:auto"><table style="font-size:12px"><thead><tr>%s</tr></thead><tbody>%s</tbody></table>'
+            "</div>" % (heads, rows))
+
+
+def _side(cells: Iterable[Any]) -> str:
+    return "right" if any(_is_number(cell) for cell in cells) else "left"
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def _cell(value: Any) -> str:
-    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    text = "" if value is None else _number(value) if is_number else escape(str(value))
-    return '<td style="%s">%s</td>' % (_CELL % ("right" if is_number else "left"), text)
+    text = "" if value is None else _number(value) if _is_number(value) else escape(str(value))
+    return '<td style="%s">%s</td>' % (_CELL % _side([value]), text)
 
 
 def _number(value: float) -> str:
@@ -134,7 +142,7 @@ def _plot(title: str, x_label: str, curves: Sequence[_Curve]) -> str:
 
 
 def _finite(value: Any) -> bool:
-    return isinstance(value, (int, float)) and isfinite(value)
+    return _is_number(value) and isfinite(value)
 
 
 def _range(values: List[float]) -> Tuple[float, float]:

@@ -293,10 +293,11 @@ Product lim_pid() {
                                 {"Nd", 10.0},
                                 {"wp", 0.6},
                                 {"wd", 0.0}}),
-        .snippets = {{"Modelica",
-                      "Modelica.Blocks.Continuous.LimPID "
-                      "controller(controllerType=Modelica.Blocks.Types.SimpleController.{controllerType}, k={k}, "
-                      "Ti={Ti|0.5}, Td={Td|0.1}, Nd={Nd|10}, wp={wp}, wd={wd|0}, yMax=Modelica.Constants.inf);"}},
+        .snippets =
+            {{"Modelica",
+              "Modelica.Blocks.Continuous.LimPID "
+              "controller(controllerType=Modelica.Blocks.Types.SimpleController.{controllerType}, k={k}, "
+              "Ti={Ti|0.50}, Td={Td|0.10}, Nd={Nd|10.00}, wp={wp}, wd={wd|0.00}, yMax=Modelica.Constants.inf);"}},
     };
 }
 

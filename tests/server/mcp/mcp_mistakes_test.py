@@ -43,7 +43,7 @@ MISTAKES = [
     ("settings", {"controller": PID}, "/product", ["product is missing"]),
     ("settings", {"product": "matlab_pid", "settings": {"Kq": 1}}, "/settings/Kq", ["Kp"]),
     ("plan_relay_test", {"plant": FOPDT, "relay": {"hysteresis": "5 %"}}, "/relay/hysteresis", ["must be a number"]),
-    ("code", {"controller": PID, "language": "matlab"}, "/language", ["st, c or python"]),
+    ("code", {"controller": PID, "language": "matlab"}, "/language", ["st, c, python or arduino"]),
     ("code", {"controller": PID}, "/language", ["language is missing"]),
     ("code", {"language": "st"}, "/job", ["job is missing"]),
     ("code", {"job": "99", "language": "st"}, "", ["There is no job 99"]),

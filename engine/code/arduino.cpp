@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "engine/code/algorithm.h"
 #include "engine/code/print.h"
 
@@ -21,7 +23,9 @@ void setup()
 void loop()
 {
     if ((long)(millis() - next_call) < 0) return;
-    next_call += (unsigned long)(1000.0 * @NAME@.Ts + 0.5);
+    const unsigned long period = (unsigned long)(1000.0 * @NAME@.Ts + 0.5);
+    next_call += period;
+    if ((long)(millis() - next_call) >= 0) next_call = millis() + period; /* it was late */
 @READ@    @CALL@
 @WRITE@}
 )";
@@ -53,7 +57,9 @@ void loop()
         if (key == 'x') start = false;
     }
     if ((long)(millis() - next_call) < 0) return;
-    next_call += (unsigned long)(1000.0 * @NAME@.Ts + 0.5);
+    const unsigned long period = (unsigned long)(1000.0 * @NAME@.Ts + 0.5);
+    next_call += period;
+    if ((long)(millis() - next_call) >= 0) next_call = millis() + period; /* it was late */
 @READ@    const double now = (double)(millis() - began) / 1000.0;
     @CALL@
 @WRITE@    if (@NAME@.recording) {
@@ -89,7 +95,14 @@ std::vector<std::string> written_outputs(const Program& program) {
     return out;
 }
 
-bool is_given(const std::string& input) { return input.starts_with("setpoint") || input == "u_controller"; }
+double setting_of(const Program& program, const char* name, double otherwise) {
+    for (const Declaration& setting : of_role(program, VariableRole::parameter))
+        if (setting.name == name && std::abs(setting.initial) < kNoLimit) return setting.initial;
+    return otherwise;
+}
+
+/// u of a board whose owner has not yet said which: the safe value, else the least u, else 0.
+double resting_output(const Program& program) { return setting_of(program, "u_safe", setting_of(program, "u_min", 0)); }
 
 /// A function for each signal, with an example of its hardware: measurements at the analogue pins, in percent.
 std::string signals(const Program& program) {
@@ -98,14 +111,16 @@ std::string signals(const Program& program) {
         "*/\n";
     int pin = 0;
     for (const std::string& input : read_inputs(program)) {
-        const std::string value =
-            is_given(input) ? "50.0" : "analogRead(A" + std::to_string(pin++) + ") * (100.0 / 1023.0)";
+        const std::string value = input == "u_controller" ? real_literal(resting_output(program), 'e')
+                                  : input.starts_with("setpoint")
+                                      ? "50.0"
+                                      : "analogRead(A" + std::to_string(pin++) + ") * (100.0 / 1023.0)";
         out += "\nstatic double read_" + input + "()\n{\n    return " + value + ";\n}\n";
     }
     pin = 9;
     for (const std::string& output : written_outputs(program))
         out += "\nstatic void write_" + output + "(double value)\n{\n    analogWrite(" + std::to_string(pin++) +
-               ", (int)(value * (255.0 / 100.0) + 0.5));\n}\n";
+               ", (int)(value * (255.0 / " + real_literal(setting_of(program, "u_max", 100), 'e') + ") + 0.5));\n}\n";
     return out;
 }
 

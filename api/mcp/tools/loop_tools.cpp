@@ -80,8 +80,7 @@ Tool plan_relay_test_tool() {
                 "plan for the real test (levels, hysteresis, cycles, duration, recording interval). Use it before a "
                 "person runs the test; it runs nothing itself. Give noise_std, the standard deviation of the "
                 "measurement, to get a hysteresis.",
-            .example =
-                R"json({"plant": "2 e^(-3s)/(10s+1)", "relay": {"u_plus": 1, "u_minus": -1}})json",
+            .example = R"json({"plant": "2 e^(-3s)/(10s+1)", "relay": {"u_plus": 1, "u_minus": -1}})json",
             .makes_job = false,
             .arguments =
                 [](ShownTypes& shown) {

@@ -51,6 +51,9 @@ std::optional<Error> fault_of(Experiment kind, const ExperimentOptions& o) {
     if (o.cycles < 0 || o.cycles > kMostCycles)
         return invalid("cycles", "cycles is " + std::to_string(o.cycles) + "; it must be 0 to " +
                                      std::to_string(kMostCycles) + ".");
+    if (o.quiet_time > 0 && o.max_time > 0 && !(o.quiet_time < o.max_time))
+        return invalid("max_time", "max_time is " + text(o.max_time) + " and quiet_time " + text(o.quiet_time) +
+                                       "; max_time must be > quiet_time.");
     if (auto fault = range_fault("u_min", o.u_min, "u_max", o.u_max)) return fault;
     if (auto fault = range_fault("y_min", o.y_min, "y_max", o.y_max)) return fault;
     if (o.u_safe && !(*o.u_safe >= o.u_min.value_or(-kNoLimit) && *o.u_safe <= o.u_max.value_or(kNoLimit)))

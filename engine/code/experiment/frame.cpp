@@ -36,6 +36,7 @@ std::vector<std::pair<int, std::string>> sentences() {
 constexpr int kQuietCalls = 30;
 constexpr int kLongestCalls = 5000;
 constexpr double kStandardDeviations = 3;  // that a single sample exceeds once in 741
+constexpr double kFalse = 8;               // standard deviations of the noise: no change of y by noise
 constexpr double kLevels = 1.5;            // of the sensor's resolution
 constexpr int kUnchangedCalls = 20;        // beyond five of the longest rest of y in the quiet time, it is frozen
 
@@ -92,6 +93,10 @@ void ExperimentFrame::declare_states() {
     hysteresis_ = state("hysteresis", "y must leave this band about y0, to either side");
     calls_ = state("calls", "calls of the quiet time");
     sum_ = state("sum", "sum of y - y_first in the quiet time");
+    highest_ = state("highest", "largest y - y_first in the quiet time");
+    lowest_ = state("lowest", "the least");
+    largest_ = state("largest", "largest change of y in the quiet time");
+    second_ = state("second", "the second largest");
     changes_ = state("changes", "sum of the sizes of the changes of y");
     least_change_ = state("least_change", "the smallest of them that is not 0");
     unchanged_ = state("unchanged", "calls in which y did not change");
@@ -115,6 +120,9 @@ Block ExperimentFrame::take_size(const Expr& to, const Expr& x) {
 }
 
 Program ExperimentFrame::build() {
+    add(remark("A u_controller that is not a number: the last u in its place."));
+    given_ = let("u_given", "u of the controller", u_controller_);
+    add(when(given_ != given_, {assign(given_, u_last_)}));
     add_start();
     add_stop();
     running_ = let("running", "true: the test runs",
@@ -136,7 +144,7 @@ Program ExperimentFrame::build() {
 void ExperimentFrame::add_start() {
     add(remark("The start."));
     Block restarted = fault(ExperimentReason::restarted);
-    restarted.push_back(assign(u0_, u_controller_));
+    restarted.push_back(assign(u0_, given_));
     add(when(both(start_, inverse(powered_)), std::move(restarted),
              {when(both(start_, both(inverse(start_last_), is(ExperimentMode::idle))), begin_all())}));
     add(assign(powered_, truth(true)));
@@ -144,14 +152,14 @@ void ExperimentFrame::add_start() {
 }
 
 Block ExperimentFrame::begin_all() {
-    Block block{set(ExperimentMode::quiet),     assign(reason_now_, whole(0)),  assign(u0_, u_controller_),
-                assign(target_, u_controller_), assign(u_last_, u_controller_), assign(timed_, now_ >= 0.0)};
+    Block block{set(ExperimentMode::quiet), assign(reason_now_, whole(0)), assign(u0_, given_),
+                assign(target_, given_),    assign(u_last_, given_),       assign(timed_, now_ >= 0.0)};
     block.push_back(assign(now_last_, now_ - Ts_));
     block.push_back(assign(y_last_, y_));
     block.push_back(assign(y0_, y_));
     block.push_back(assign(t_, -Ts_));
-    for (const Expr& x :
-         {t_phase_, noise_, hysteresis_, calls_, sum_, changes_, least_change_, unchanged_, run_, longest_run_})
+    for (const Expr& x : {t_phase_, noise_, hysteresis_, calls_, sum_, highest_, lowest_, changes_, largest_, second_,
+                          least_change_, unchanged_, run_, longest_run_})
         block.push_back(assign(x, 0.0));
     block += begin();
     const Expr outside = inverse(both(u0_ >= u_min_, inverse(u0_ > u_max_)));
@@ -159,24 +167,25 @@ Block ExperimentFrame::begin_all() {
     return block;
 }
 
+// The controller follows u while mode is not 0: it has followed the last u when it takes over.
 void ExperimentFrame::add_stop() {
-    add(remark("The end by the operator: u goes back at once."));
+    add(remark("The end by the operator: u goes back first, then the controller has it."));
     const Expr runs =
         either(is(ExperimentMode::quiet), either(is(ExperimentMode::first_move), is(ExperimentMode::test)));
-    add(assign(u_, u_controller_));
+    const Expr returns = both(is(ExperimentMode::done), u_last_ != target_);
+    add(assign(u_, given_));
     add(assign(recording_, truth(false)));
-    add(when(inverse(start_),
-             {when(runs, {assign(reason_now_, whole(static_cast<int>(ExperimentReason::by_operator))), assign(u_, u0_)},
-                   {when(mode_now_ != whole(0), {assign(u_, u_last_)})}),
-              assign(u_last_, u_), set(ExperimentMode::idle)}));
+    add(when(inverse(start_), {when(runs, end(ExperimentReason::by_operator),
+                                    {when(both(mode_now_ != whole(0), inverse(returns)),
+                                          {assign(u_, u_last_), set(ExperimentMode::idle)})})}));
+    add(when(is(ExperimentMode::idle), {assign(u_last_, u_)}));
 }
 
-void ExperimentFrame::check(const Expr& wrong, ExperimentReason reason) {
-    add(when(both(running_, wrong), [&] {
-        Block block = fault(reason);
-        block.push_back(assign(running_, truth(false)));
-        return block;
-    }()));
+void ExperimentFrame::check(const Expr& where, const Expr& wrong, ExperimentReason reason) {
+    Block block = fault(reason);
+    block.push_back(assign(running_, truth(false)));
+    block.push_back(assign(watched_, truth(false)));
+    add(when(both(where, wrong), std::move(block)));
 }
 
 void ExperimentFrame::add_faults() {
@@ -185,11 +194,13 @@ void ExperimentFrame::add_faults() {
     add(when(timed_, {assign(dt_, now_ - now_last_)}));
     difference_ = local("difference", "of u_actual from u");
     add(take_size(difference_, u_actual_ - u_last_));
-    check(either(inverse(ok_), y_ != y_), ExperimentReason::sensor);
-    check(inverse(both(dt_ > 0, inverse(dt_ > longest_gap_))), ExperimentReason::clock);
-    check(both(u_actual_ < kNoLimit, both(t_ >= 0.0, difference_ > u_tolerance_)), ExperimentReason::u_refused);
-    check(y_ < y_min_, ExperimentReason::y_low);
-    check(y_ > y_max_, ExperimentReason::y_high);
+    watched_ = let("watched", "true: u is the test's, also after its end", either(running_, is(ExperimentMode::done)));
+    check(watched_, either(inverse(ok_), y_ != y_), ExperimentReason::sensor);
+    check(running_, inverse(both(dt_ > 0, inverse(dt_ > longest_gap_))), ExperimentReason::clock);
+    const Expr refused = either(u_actual_ != u_actual_, both(u_actual_<kNoLimit, difference_> u_tolerance_));
+    check(running_, both(t_ >= 0.0, refused), ExperimentReason::u_refused);
+    check(watched_, y_ < y_min_, ExperimentReason::y_low);
+    check(watched_, y_ > y_max_, ExperimentReason::y_high);
 
     add(when(running_, {assign(t_, t_ + dt_), when(inverse(calls_ > 0), {assign(t_, 0.0)})}));
     add(assign(now_last_, now_));
@@ -200,13 +211,17 @@ void ExperimentFrame::add_faults() {
     const Expr by_time = both(frozen_time_ > 0, run_ * Ts_ > frozen_time_);
     const Expr by_itself = both(both(inverse(frozen_time_ > 0), after_quiet),
                                 both(changes_ > 0, run_ > 5 * longest_run_ + kUnchangedCalls));
-    check(either(by_time, by_itself), ExperimentReason::frozen);
-    check(t_ > max_time_, ExperimentReason::time);
+    check(running_, either(by_time, by_itself), ExperimentReason::frozen);
+    check(running_, t_ > max_time_, ExperimentReason::time);
 }
 
 void ExperimentFrame::add_noise() {
     add(remark("The quiet time: the noise of y, from its changes from call to call."));
-    Block quiet{assign(calls_, calls_ + 1), assign(sum_, sum_ + (y_ - y0_))};
+    const Expr beside = y_ - y0_;
+    Block quiet{assign(calls_, calls_ + 1), assign(sum_, sum_ + beside),
+                when(beside > highest_, {assign(highest_, beside)}), when(beside < lowest_, {assign(lowest_, beside)}),
+                when(change_ > largest_, {assign(second_, largest_), assign(largest_, change_)},
+                     {when(change_ > second_, {assign(second_, change_)})})};
     const Expr smallest = either(inverse(least_change_ > 0), change_ < least_change_);
     quiet.push_back(when(calls_ > 1, {assign(changes_, changes_ + change_),
                                       when(change_ > 0, {when(smallest, {assign(least_change_, change_)})},
@@ -216,10 +231,14 @@ void ExperimentFrame::add_noise() {
     add(when(both(running_, is(ExperimentMode::quiet)), std::move(quiet)));
 }
 
+// A single false value makes two large changes: both are left out if they stand far above the others, and so are the
+// highest and the lowest value.
 Block ExperimentFrame::end_of_quiet() {
     const double deviations = std::sqrt(std::numbers::pi) / 2;  // of a mean difference
-    Block block{assign(y0_, y0_ + sum_ / calls_), assign(noise_, deviations * changes_ / (calls_ - 1)),
-                assign(hysteresis_, kStandardDeviations * noise_)};
+    Block block{assign(noise_, deviations * (changes_ - largest_ - second_) / (calls_ - 3))};
+    block.push_back(when(largest_ > kFalse * noise_, {assign(y0_, y0_ + (sum_ - highest_ - lowest_) / (calls_ - 2))},
+                         {assign(noise_, deviations * changes_ / (calls_ - 1)), assign(y0_, y0_ + sum_ / calls_)}));
+    block.push_back(assign(hysteresis_, kStandardDeviations * noise_));
     // Where y often stays as it is, its smallest change is the sensor's resolution.
     block.push_back(when(both(5 * unchanged_ > calls_, kLevels * least_change_ > hysteresis_),
                          {assign(hysteresis_, kLevels * least_change_)}));

@@ -55,14 +55,16 @@ private:
     void add_output();
     Block begin_all();
     Block end_of_quiet();
-    void check(const Expr& wrong, ExperimentReason reason);
+    /// A fault where `where` and `wrong` hold.
+    void check(const Expr& where, const Expr& wrong, ExperimentReason reason);
 
     Expr ok_ = 0, now_ = 0, u_actual_ = 0;
     Expr y_min_ = 0, y_max_ = 0, u_safe_ = 0, rate_limit_ = 0, quiet_time_ = 0, hysteresis_min_ = 0, frozen_time_ = 0,
          longest_gap_ = 0, u_tolerance_ = 0;
     Expr powered_ = 0, start_last_ = 0, mode_now_ = 0, reason_now_ = 0, now_last_ = 0, timed_ = 0, u_last_ = 0;
-    Expr calls_ = 0, sum_ = 0, changes_ = 0, least_change_ = 0, unchanged_ = 0, run_ = 0, longest_run_ = 0;
-    Expr running_ = 0, dt_ = 0, change_ = 0, difference_ = 0;
+    Expr calls_ = 0, sum_ = 0, highest_ = 0, lowest_ = 0, largest_ = 0, second_ = 0, changes_ = 0, least_change_ = 0,
+         unchanged_ = 0, run_ = 0, longest_run_ = 0;
+    Expr given_ = 0, running_ = 0, watched_ = 0, dt_ = 0, change_ = 0, difference_ = 0;
 };
 
 }  // namespace tunewright::code

@@ -77,6 +77,7 @@ public:
         held_ = true;
         program_["measurement"] = y;
     }
+    void release_measurement() { held_ = false; }
     void jump_clock(double by) { clock_ += by; }
 
 private:
@@ -305,6 +306,7 @@ std::vector<Fault> faults() {
             {"infinite", Reason::y_high, [](Trial& r) { r.hold_measurement(std::numeric_limits<double>::infinity()); }},
             {"below its range", Reason::y_low, [](Trial& r) { r.hold_measurement(-0.001); }},
             {"above its range", Reason::y_high, [](Trial& r) { r.hold_measurement(60.001); }},
+            {"u lost", Reason::u_refused, [](Trial& r) { r["u_actual"] = kNan; }},
             {"u refused", Reason::u_refused, [](Trial& r) { r["u_actual"] = r.u() + 2; }},
             {"clock forward", Reason::clock, [](Trial& r) { r.jump_clock(10); }},
             {"clock backward", Reason::clock, [](Trial& r) { r.jump_clock(-1); }},
@@ -378,11 +380,71 @@ TEST(ExperimentProgram, TheOperatorEndsItAtOnceWithUAsBefore) {
         run.call();
         EXPECT_EQ(run.u(), kU0);
         EXPECT_EQ(run.reason(), Reason::by_operator);
+        EXPECT_EQ(run.mode(), Mode::done);  // for the controller, which still follows
         run["u_controller"] = run.u();
-        run.call();
-        EXPECT_EQ(run.u(), kU0);
+        for (int k = 0; k < 3; ++k) {
+            run.call();
+            EXPECT_EQ(run.u(), kU0);
+            EXPECT_EQ(run.mode(), Mode::idle);
+        }
         run["start"] = 1;  // and again
         run.call_until(Mode::done);
+    }
+}
+
+TEST(ExperimentProgram, TheOperatorsEndKeepsTheRateAndModeStaysUntilUIsBack) {
+    ExperimentOptions asked = options();
+    asked.rate_limit = 4;
+    Trial run(Experiment::relay, asked);
+    run.call_until(Mode::test);
+    for (int k = 0; k < 4; ++k) run.call();
+    run["start"] = 0;
+    double last = run.u();
+    ASSERT_GT(std::abs(last - kU0), 4 * kTs);
+    for (int k = 0; k < 20 && run.mode() != Mode::idle; ++k, last = run.u()) {
+        run["u_controller"] = last;
+        run.call();
+        EXPECT_LE(std::abs(run.u() - last), 4 * kTs + 1e-9);
+    }
+    EXPECT_EQ(run.u(), kU0);
+    EXPECT_EQ(run.mode(), Mode::idle);
+}
+
+TEST(ExperimentProgram, ItWatchesYUntilTheControllerHasTakenOver) {
+    for (const double bad : {60.5, -1.0, kNan}) {
+        Trial run(Experiment::relay, options());
+        run.call_until(Mode::done);
+        for (int k = 0; k < 5; ++k) run.call();
+        EXPECT_EQ(run.u(), kU0);
+        run.hold_measurement(bad);
+        run.call();
+        EXPECT_EQ(run.mode(), Mode::stopped);
+        EXPECT_EQ(run.u(), kSafe);
+    }
+}
+
+TEST(ExperimentProgram, AControllersUThatIsNoNumberIsReplacedByTheLastU) {
+    Trial run(Experiment::relay, options());
+    run["start"] = 0;
+    run.call();
+    run["u_controller"] = kNan;
+    run.call();
+    EXPECT_EQ(run.u(), kU0);
+    run["start"] = 1;
+    run.call_until(Mode::done);
+    EXPECT_EQ(run.u(), kU0);
+}
+
+TEST(ExperimentProgram, OneFalseValueInTheQuietTimeChangesNeitherLevelNorNoise) {
+    for (const double spike : {20.0, -20.0}) {
+        Trial run(Experiment::relay, options(), {}, 0.1);
+        for (int k = 0; run.mode() < Mode::first_move; ++k) {
+            if (k == 10) run.hold_measurement(kY0 + spike);
+            if (k == 11) run.release_measurement();
+            run.call();
+        }
+        EXPECT_NEAR(run["noise"], 0.1, 0.05);
+        EXPECT_NEAR(run["y0"], kY0, 0.1);
     }
 }
 
@@ -391,8 +453,7 @@ TEST(ExperimentProgram, ALevelOutOfReachIsRefusedAtTheStart) {
                                   {0.0, Experiment::relay},
                                   {101.0, Experiment::relay},
                                   {99.5, Experiment::bump},
-                                  {-1.0, Experiment::bump},
-                                  {kNan, Experiment::bump}}) {
+                                  {-1.0, Experiment::bump}}) {
         Trial run(kind, options());
         run["u_controller"] = u;
         run.call();

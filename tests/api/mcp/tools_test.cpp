@@ -81,7 +81,7 @@ TEST(McpTools, AShortAnswerHasTheFiguresAndSentencesOfTheWholeOne) {
     PlainHost host;
     const Json answer = called("tune", kTune, host);
     const Json whole = Json::parse(host.job->result);
-    const Json& best = whole.at("controllers").at(whole.at("ranking").at(0));
+    const Json& best = whole.at("controllers").at(whole.at("ranking").at(0).get<std::size_t>());
     const Json& figures = answer.at("structuredContent");
     EXPECT_LT(answer.dump().size(), 5000U);
 

@@ -79,8 +79,10 @@ Tool plan_relay_test_tool() {
                 "Simulates a relay experiment on an assumed plant: the steady oscillation (period, amplitude) and a "
                 "plan for the real test (levels, hysteresis, cycles, duration, recording interval). Use it before a "
                 "person runs the test; it runs nothing itself. Give noise_std, the standard deviation of the "
-                "measurement, to get a hysteresis.",
-            .example = R"json({"plant": "2 e^(-3s)/(10s+1)", "relay": {"u_plus": 1, "u_minus": -1}})json",
+                "measurement, with relay_sample_time, to get a hysteresis.",
+            .example =
+                R"json({"plant": "2 e^(-3s)/(10s+1)", "relay": {"u_plus": 1, "u_minus": -1, "noise_std": 0.05, )json"
+                R"json("relay_sample_time": 0.1}})json",
             .makes_job = false,
             .arguments =
                 [](ShownTypes& shown) {

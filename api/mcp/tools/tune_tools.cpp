@@ -38,7 +38,7 @@ Tool tune_tool() {
                 "load IAE within Ms and Mt; its option certify proves how much better any other PID could be. "
                 "`implement` gives the values to type into a product (ids: list_products), `baseline` compares with "
                 "today's settings. Use it instead of guessing gains. An Ms of 1.2 is calm, 2 is sharp.",
-            .example = R"json({"plant": "2 e^(-3s)/(10s+1)", "tune": [{"method": "robust", "Ms": 1.4}]})json",
+            .example = R"json({"plant": "2 e^(-3s)/(10s+1)", "tune": [{"method": "robust", "Ms": 1.6}]})json",
             .makes_job = true,
             .arguments = tune_arguments,
             .call = tune};

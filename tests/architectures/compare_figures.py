@@ -92,7 +92,7 @@ def requests(examples):
     plant = {"type": "fopdt", "K": 2, "T": 10, "L": 3}
     for each in (plant, {"type": "ipdt", "K": 0.1, "L": 2}, {"type": "zpk", "K": 9, "poles": [-1, [-0.5, 2.958], [-0.5, -2.958]]}):
         yield "all methods on " + each["type"], "tune", {"plant": each, "tune": [{"method": "all"}], "evaluate": {"points": 50}}
-    for product in ("siemens_pid_compact", "arduino_pid_v1", "esphome_pid", "marlin_hotend", "simatic_pcs7_pidconl"):
+    for product in ("siemens_pid_compact", "beckhoff_fb_ctrl_pid", "matlab_pidstd", "controlsystems_jl_pid"):
         yield "product " + product, "tune", {"plant": plant, "tune": [{"method": "robust"}, {"method": "simc"}],
                                              "implement": {"product": product, "sample_time": 0.5}, "evaluate": {"points": 50}}
     for path in sorted((ROOT / "tests" / "data" / "records").glob("*.csv")):

@@ -8,10 +8,9 @@ library. Each figure of both answers is compared in two ways:
 
 - settings given: the controllers of the reference's answers are evaluated by both. No search is involved, so every figure
   has to be the same within 1e-12 of itself, or of the largest value of its trace;
-- answers as a whole: a search ends where a difference in the last digits lets it end. What it found has to be the same
-  within the tolerance to which the search promises it.
-
-A number near zero is compared with the size of the numbers that it is a difference of, as stated in SIZES."""
+- whole answer: a search ends where a difference in the last digits lets it end. What it found has to be the same within
+  1e-4, which is what the search promises of the cost; most are the same to 1e-7. Models that are not chosen and that the
+  record does not determine are left out: their standard errors are differences of numbers that are nearly equal."""
 
 import argparse
 import concurrent.futures
@@ -23,12 +22,12 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-EXACT = 1e-12
-# Of searches: of the settings (a flat optimum), and of the cost and the peaks.
-SEARCHED_SETTING = 2e-2
-SEARCHED_FIGURE = 1e-3
+# Relative differences that are allowed. Of whole answers: searches end where the cost is flat.
+ALLOWED = {"whole answer": 1e-4, "settings given": 1e-12}
+# Figures that are searched for with given settings too.
+SEARCHED = {"longest_sample_time"}
 # What a check found to be left over is rounding itself: its size is no figure. Counts of a search are no figures either.
-LEFT_OUT = {"version", "compute_ms", "verification", "evaluations", "iterations", "starts"}
+LEFT_OUT = {"version", "compute_ms", "verification", "evaluations", "iterations", "starts", "candidates"}
 
 
 def own_binary():
@@ -93,7 +92,7 @@ def requests(examples):
     plant = {"type": "fopdt", "K": 2, "T": 10, "L": 3}
     for each in (plant, {"type": "ipdt", "K": 0.1, "L": 2}, {"type": "zpk", "K": 9, "poles": [-1, [-0.5, 2.958], [-0.5, -2.958]]}):
         yield "all methods on " + each["type"], "tune", {"plant": each, "tune": [{"method": "all"}], "evaluate": {"points": 50}}
-    for product in ("siemens_pid_compact", "arduino_pid_v1", "esphome_pid", "marlin_hotend", "simatic_pcs7_pidconl"):
+    for product in ("siemens_pid_compact", "beckhoff_fb_ctrl_pid", "matlab_pidstd", "controlsystems_jl_pid"):
         yield "product " + product, "tune", {"plant": plant, "tune": [{"method": "robust"}, {"method": "simc"}],
                                              "implement": {"product": product, "sample_time": 0.5}, "evaluate": {"points": 50}}
     for path in sorted((ROOT / "tests" / "data" / "records").glob("*.csv")):
@@ -143,7 +142,7 @@ class Comparison:
 
     def number(self, place, a, b, size):
         self.count += 1
-        if a != b:
+        if a != b and not (place.rsplit("/", 1)[-1] in SEARCHED and abs(a - b) <= ALLOWED["whole answer"] * size):
             self.differences.append((abs(a - b) / size, place, "%.17g and %.17g" % (a, b)))
 
 
@@ -174,21 +173,25 @@ def main():
         return name, compared(one, two), compared(*pair) if pair else None
 
     tasks = [task for task in requests(reference.examples()) if words.only in task[0]]
-    figures, worst_given, failed = 0, 0.0, 0
+    figures, worst, beyond = 0, {kind: 0.0 for kind in ALLOWED}, 0
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        for name, whole, given in pool.map(both, tasks):
-            for kind, comparison in (("answer", whole), ("settings given", given)):
+        for name, *comparisons in pool.map(both, tasks):
+            for kind, comparison in zip(ALLOWED, comparisons):
                 if comparison is None:
                     continue
                 figures += comparison.count
                 rows = sorted(comparison.differences, key=lambda row: -row[0])
-                worst = rows[0][0] if rows else 0.0
-                print("%-42s %-15s %7d figures, worst %.1e" % (name, kind, comparison.count, worst))
+                largest = rows[0][0] if rows else 0.0
+                worst[kind] = max(worst[kind], largest)
+                beyond += sum(row[0] > ALLOWED[kind] for row in rows)
+                print("%-42s %-16s %7d figures, worst %.1e" % (name, kind, comparison.count, largest), flush=True)
                 for size, place, values in rows[:words.list]:
-                    print("    %.1e %s: %s" % (size, place, values))
-            sys.stdout.flush()
-    print("%d figures of %d requests" % (figures, len(tasks)))
+                    if size > ALLOWED[kind]:
+                        print("    %.1e %s: %s" % (size, place, values))
+    print("%d figures of %d requests; worst: %s; beyond what is allowed: %d" % (
+        figures, len(tasks), ", ".join("%s %.1e" % item for item in worst.items()), beyond))
+    return 1 if beyond else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -14,7 +14,7 @@ constexpr const char* kNoRoom = "Too many requests are being received; try again
 using HandlerResponse = httplib::Server::HandlerResponse;
 
 /// True for a character that would end a header's line, or is forbidden in it.
-bool is_control(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == 127; }
+bool is_control(unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; }
 
 /// IMF-fixdate, formatted once a second by each thread.
 const std::string& http_date() {

@@ -6,6 +6,7 @@ import math
 import pathlib
 import random
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -83,6 +84,14 @@ class AutotuneTest(unittest.TestCase):
             self.assertEqual({len(tuned.record[name]) for name in "tuy"}, {len(tuned.record["t"])})
             self.assertRegex(lines[-1], r"^complete: fopdt \(K 1\.\d+ \+- [\d.]+, T .*\), fit 9\d\.\d %, grade \w+; Ms 1\.\d\d at worst")
 
+    def test_u_goes_back_at_its_rate(self):
+        for rest in ({"cycles": 3}, {"cycles": 25, "most_cost": 9}):
+            plant = Plant(noise=0.001)
+            self.tune(plant, rate_limit=4, **rest)
+            self.assertEqual(plant.u, U0)
+            moves = [abs(b - a) for a, b in zip(plant.written, plant.written[1:])]
+            self.assertLessEqual(max(moves), 4 * plant.Ts + 1e-9)
+
     def test_it_ends_early_when_the_design_is_good_enough(self):
         plant = Plant(noise=0.001)
         tuned = self.tune(plant, cycles=25)
@@ -134,8 +143,21 @@ class AutotuneTest(unittest.TestCase):
         self.stopped(plant, 15)
         plant = Plant()
         write = plant.write
-        plant.write = lambda u: (write(u), U0 + 1)[1]  # the actuator stays in manual
+        plant.write = lambda u: (write(u), U0 + 1.5 if plant.tested and plant.u != SAFE else u)[1]  # it stays in manual
         self.stopped(plant, 14)
+        plant = Plant()
+        write = plant.write
+        plant.write = lambda u: (write(u), U0)[1]  # and takes no safe value either
+        with self.assertRaisesRegex(TestStopped, "could NOT be set to its safe value 7: the actuator reads back 40"):
+            self.tune(plant)
+        plant = Plant()
+        plant.read = lambda: unknown_name if plant.tested else Y0  # noqa: F821
+        stopped = self.stopped(plant, 10)
+        self.assertIn("NameError", str(stopped))
+        self.assertIsInstance(stopped.__cause__, NameError)
+        plant = Plant()
+        plant.read = lambda: "warm" if plant.tested else Y0
+        self.assertIn("ValueError", str(self.stopped(plant, 10)))
         plant = Plant()
         plant.read = lambda: Y0
         self.stopped(plant, 17, max_time=200)
@@ -169,11 +191,16 @@ class AutotuneTest(unittest.TestCase):
                     raise end
 
             plant.before_read = stop
-            with self.assertRaises(end):
+            with self.assertRaises(end) as caught:
                 self.tune(plant)
             self.assertEqual(plant.u, SAFE)
+            self.assertGreater(len(caught.exception.record["t"]), 25)
 
-    def test_a_program_that_is_interrupted_in_real_time_leaves_the_safe_value(self):
+    def test_a_program_that_is_ended_in_real_time_leaves_the_safe_value(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            self.ended_by(number)
+
+    def ended_by(self, number):
         with tempfile.TemporaryDirectory() as name:
             script = pathlib.Path(name, "loop.py")
             script.write_text(LOOP % (str(CLIENT), name, name, name, self.client.base_url))
@@ -182,7 +209,7 @@ class AutotuneTest(unittest.TestCase):
             until = time.monotonic() + 30
             while time.monotonic() < until and not (told.exists() and told.read_text() not in ("", "40.0")):
                 time.sleep(0.02)
-            child.send_signal(2)
+            child.send_signal(number)
             child.wait(20)
             self.assertEqual(told.read_text(), "7.0")
 
@@ -191,8 +218,11 @@ class AutotuneTest(unittest.TestCase):
         with self.assertRaises(Problem) as caught:
             self.tune(plant, y_max=-5)
         self.assertEqual(caught.exception.errors[0].pointer, "/y_max")
-        with self.assertRaises(Problem):
-            self.tune(plant, colour="red")
+        for wrong in ({"colour": "red"}, {"Ms": 0.9}, {"tune": [{"method": "robst"}]}, {"product": "simens"}):
+            with self.assertRaises(Problem):
+                self.tune(plant, **wrong)
+        with self.assertRaisesRegex(ValueError, "u is 40: the test cannot begin"):
+            self.tune(plant, u_max=40)
         self.assertEqual(plant.written, [])
 
     def test_each_row_is_kept_as_it_comes(self):
@@ -214,6 +244,8 @@ class AutotuneTest(unittest.TestCase):
 
         def away():
             if len(kills) < 3 and plant.time > 20 + 8 * len(kills):
+                for earlier in kills:
+                    earlier.join()
                 service.kill()
                 kills.append(threading.Timer(0.5, service.start))
                 kills[-1].start()

@@ -16,7 +16,7 @@ from structures import in_c, in_python, in_structured_text
 SAMPLES = 10_000
 LANGUAGES = ("st", "c", "python", "arduino")
 OPTIONS = {"sample_time": 0.5, "u_step": 10, "u_min": 0, "u_max": 100, "y_min": 0, "y_max": 60, "u_safe": 7}
-SKETCH = dict(OPTIONS, y_max=90)
+SKETCH = dict(OPTIONS, y_max=90, u_safe=50)  # its placeholder of the controller
 INPUTS = ("measurement", "u_controller", "start", "measurement_ok", "now", "u_actual")
 FLAGS = ("start", "measurement_ok")
 OUTPUTS = ("u", "mode", "reason", "recording")

@@ -116,7 +116,7 @@ def through_client(service, kind, options, plant, Ts, case, size, chance, Ms):
         return Ms, {}, now["u"], str(stopped)
     except Problem as problem:  # no controller of the model keeps the limit: the record again with the least that one keeps
         limit = float(problem.body["cure"]["options"]["Ms"])
-        request = {"record": problem.record, "tune": [{"method": "robust", "Ms": limit}], "evaluate": {"points": 0}}
+        request = {"record": problem.record, "tune": [{"method": "robust", "Ms": limit, "Mt": limit}], "evaluate": {"points": 0}}
         return limit, service.client.run(request), now["u"], None
 
 

@@ -10,9 +10,10 @@ record. Whatever happens (a fault, a lost connection, Ctrl-C), u ends at its saf
 """
 
 import contextlib
+import signal
 import threading
 import time
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from . import bump_program, relay_program
 from .client import Client
@@ -28,7 +29,7 @@ _PROGRAMS = {"relay": (relay_program.TunewrightRelay, relay_program.REASONS),
              "bump": (bump_program.TunewrightBump, bump_program.REASONS)}
 _SIGNS = {"reverse": 1.0, "direct": -1.0, "find": 0.0}
 _DONE, _STOPPED = 4, 5  # modes of the programs
-_COMPLETE = (1, 2)  # reasons
+_BEYOND = "the test cannot begin"
 
 
 class TestStopped(Exception):
@@ -64,7 +65,8 @@ def autotune(read: Callable[[], Reading], write: Callable[[float], Optional[floa
              **limits: Any) -> Autotuned:
     """Runs a relay test or a bump, and returns settings.
 
-    `read()` returns y, or (y, False) for a bad measurement; `write(u)` sets u and may return the u that was accepted.
+    `read()` returns y, or (y, False) for a bad measurement; `write(u)` sets u and may return, as a float, the u that the
+    device has accepted (not the position of a slow valve).
     An exception of either is a fault. `u` is the present u, which the test begins from and gives back. Times are in
     seconds. `limits`: u_min, u_max, y_min, y_max, u_safe, rate_limit, max_time, quiet_time, hysteresis, frozen_time,
     asymmetry, cycles, action, y_move, as POST /v1/experiments/code describes them.
@@ -80,22 +82,63 @@ def autotune(read: Callable[[], Reading], write: Callable[[float], Optional[floa
     than the client's timeout after a complete test, or refuses the record, the exception has the record in `record`.
     """
     client = client or Client()
+    show = show or (lambda line: None)
     asked = dict(limits, experiment=experiment, sample_time=sample_time, u_step=u_step)
-    client.experiment(language="python", **asked)  # refuses what is not valid, before the plant is moved
+    methods = list(tune or [{"method": "robust", "Ms": Ms}])
+    # What is not valid is refused before the plant is moved.
+    client.experiment(language="python", **asked)
+    client.design({"type": "fopdt", "K": 1, "T": 10, "L": 2}, methods[0])
+    if product:
+        client.get("/v1/controllers/" + product)
     test = _Test(experiment, asked, read, write, float(u), clock, sleep, keep)
-    designs = _Designs(client, {"tune": list(tune or [{"method": "robust", "Ms": Ms}]), "evaluate": {"points": 0}},
-                       most_cost, show or (lambda line: None), background)
-    ended = test.run(designs)
+    test.refuse_out_of_reach()
+    designs = _Designs(client, {"tune": methods, "evaluate": {"points": 0}}, most_cost, show, background)
+    with _stops_as_interrupts():
+        ended = test.run(designs)
+    show("the test is complete (%s): the design follows" % ended)
     try:
         result = client.run(dict(designs.request, record=test.record(), **({"name": name} if name else {})))
         controller = result.best["controller"]
         typed = client.settings(product, controller, **dict({"sample_time": sample_time, "nearest": True},
                                                             **(settings or {}))) if product else None
-    except Exception as fault:
+    except BaseException as fault:
         fault.record = test.record()  # type: ignore[attr-defined]
         raise
-    (show or (lambda line: None))(_line("complete", result))
+    show(_line("complete", result))
     return Autotuned(controller, typed, result, test.record(), _good(result, most_cost), _missing(result, most_cost), ended)
+
+
+@contextlib.contextmanager
+def _stops_as_interrupts() -> Iterator[None]:
+    """A program that is asked to end (SIGTERM, SIGHUP) ends like by Ctrl-C: with u at its safe value."""
+    asked = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    if threading.current_thread() is not threading.main_thread():
+        asked = []
+
+    def end(number: int, frame: Any) -> None:
+        raise SystemExit(128 + number)
+
+    before = {number: signal.signal(number, end) for number in asked}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextlib.contextmanager
+def _undisturbed() -> Iterator[None]:
+    """A second Ctrl-C waits until the safe value is written."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    numbers = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 class _Test:
@@ -108,9 +151,20 @@ class _Test:
         self.program: Any = make()
         self.read, self.write, self.u, self.clock, self.sleep, self.keep = read, write, u, clock, sleep, keep
         self.rows: List[Tuple[float, float, float]] = []
-        self._configure(dict(asked))
+        self.lost: Optional[Exception] = None  #: that of the last read()
+        self.asked = dict(asked)
+        self._configure(self.program, dict(asked))
 
-    def _configure(self, asked: Dict[str, Any]) -> None:
+    def refuse_out_of_reach(self) -> None:
+        """A step that u cannot make is a mistake, not a fault of the plant: nothing is written."""
+        trial: Any = type(self.program)()
+        self._configure(trial, dict(self.asked))
+        trial.step(0.0, self.u, False)
+        reason = trial.step(0.0, self.u, True)[2]
+        if self.reasons[reason].startswith(_BEYOND):
+            raise ValueError("u is %g: %s." % (self.u, self.reasons[reason]))
+
+    def _configure(self, program: Any, asked: Dict[str, Any]) -> None:
         """The settings of the program that follow from the members of the request."""
         Ts = float(asked.pop("sample_time"))
         del asked["experiment"]
@@ -120,7 +174,7 @@ class _Test:
                  "max_time": float(asked.pop("max_time", None) or 5000 * Ts)}
         given.update({name: float(value) for name, value in asked.items() if value is not None})
         for name, value in given.items():
-            setattr(self.program, name, value)
+            setattr(program, name, value)
 
     def record(self) -> Json:
         return {name: [row[i] for row in self.rows] for i, name in enumerate(("t", "u", "y"))}
@@ -139,7 +193,8 @@ class _Test:
                 return self._calls(designs, file)
             except TestStopped:
                 raise
-            except BaseException:
+            except BaseException as fault:
+                fault.record = self.record()  # type: ignore[attr-defined]
                 self._make_safe()
                 raise
             finally:
@@ -162,12 +217,12 @@ class _Test:
                     file.write(self.program.row() + "\n")
                     file.flush()
             if mode == _STOPPED:
-                raise TestStopped("The test was stopped: %s." % self.reasons[reason], reason, self.record())
-            if enough:
-                return "the design is good enough"
-            if mode == _DONE:
-                return self.reasons[reason]
-            enough = designs.look(self)
+                why = " (%s: %s)" % (type(self.lost).__name__, self.lost) if self.lost else ""
+                raise TestStopped("The test was stopped: %s%s." % (self.reasons[reason], why), reason,
+                                  self.record()) from self.lost
+            if mode == _DONE and u == self.u:
+                return "the design is good enough" if enough else self.reasons[reason]
+            enough = enough or (mode != _DONE and designs.look(self))
             pause = start + k * self.program.Ts - self.clock()
             if pause > 0:
                 self.sleep(pause)
@@ -175,34 +230,39 @@ class _Test:
 
     def _measured(self) -> Tuple[float, bool]:
         """An exception is a bad measurement: the program then sets the safe value and says so."""
+        self.lost = None
         try:
             given = self.read()
-        except Exception:
+            y, ok = given if isinstance(given, tuple) else (given, True)
+            return float(y), bool(ok)
+        except Exception as fault:
+            self.lost = fault
             return 0.0, False
-        if isinstance(given, tuple):
-            return float(given[0]), bool(given[1])
-        return (float(given), True) if given is not None else (0.0, False)
 
     def _written(self, u: float, mode: int, reason: int) -> Optional[float]:
         if mode == _STOPPED:
-            return self._make_safe()
+            self._make_safe()
+            return None
         try:
             accepted = self.write(u)
         except Exception as fault:
             self._make_safe()
             raise TestStopped("The test was stopped: u could not be written (%s)." % fault, 0, self.record()) from fault
-        return None if accepted is None or isinstance(accepted, bool) else float(accepted)
+        return float(accepted) if isinstance(accepted, float) else None  # others are counts of bytes and the like
 
     def _make_safe(self) -> None:
-        for left in range(_TRIES - 1, -1, -1):
-            try:
-                self.write(self.safe)
-                return
-            except Exception as fault:
-                if left == 0:
-                    raise TestStopped("The test was stopped, and u could NOT be set to its safe value %g: %s. Set it by "
-                                      "hand now." % (self.safe, fault), 0, self.record()) from fault
-                self.sleep(min(self.program.Ts, 1.0))
+        with _undisturbed():
+            for left in range(_TRIES - 1, -1, -1):
+                try:
+                    accepted = self.write(self.safe)
+                    if isinstance(accepted, float) and abs(accepted - self.safe) > self.program.u_tolerance:
+                        raise ConnectionError("the actuator reads back %g" % accepted)
+                    return
+                except Exception as fault:
+                    if left == 0:
+                        raise TestStopped("The test was stopped, and u could NOT be set to its safe value %g: %s. Set it "
+                                          "by hand now." % (self.safe, fault), 0, self.record()) from fault
+                    self.sleep(min(self.program.Ts, 1.0))
 
 
 class _Designs:

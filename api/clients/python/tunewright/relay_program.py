@@ -113,6 +113,10 @@ class TunewrightRelay:
         self.hysteresis = 0.0  # y must leave this band about y0, to either side
         self.calls = 0.0  # calls of the quiet time
         self.sum = 0.0  # sum of y - y_first in the quiet time
+        self.highest = 0.0  # largest y - y_first in the quiet time
+        self.lowest = 0.0  # the least
+        self.largest = 0.0  # largest change of y in the quiet time
+        self.second = 0.0  # the second largest
         self.changes = 0.0  # sum of the sizes of the changes of y
         self.least_change = 0.0  # the smallest of them that is not 0
         self.unchanged = 0.0  # calls in which y did not change
@@ -135,18 +139,23 @@ class TunewrightRelay:
 
     def step(self, measurement, u_controller, start, measurement_ok=True, now=-1.0, u_actual=1.0e30):
         """One call every Ts seconds; the answer is u, mode, reason, recording."""
+        # A u_controller that is not a number: the last u in its place.
+        u_given = u_controller
+        if u_given != u_given:
+            u_given = self.u_last
+
         # The start.
         if start and (not self.powered):
             self.mode_now = 5
             self.reason_now = 16
-            self.u0 = u_controller
+            self.u0 = u_given
         else:
             if start and ((not self.start_last) and (not (self.mode_now != 0))):
                 self.mode_now = 1
                 self.reason_now = 0
-                self.u0 = u_controller
-                self.target = u_controller
-                self.u_last = u_controller
+                self.u0 = u_given
+                self.target = u_given
+                self.u_last = u_given
                 self.timed = now >= 0.0
                 self.now_last = now - self.Ts
                 self.y_last = measurement
@@ -157,7 +166,11 @@ class TunewrightRelay:
                 self.hysteresis = 0.0
                 self.calls = 0.0
                 self.sum = 0.0
+                self.highest = 0.0
+                self.lowest = 0.0
                 self.changes = 0.0
+                self.largest = 0.0
+                self.second = 0.0
                 self.least_change = 0.0
                 self.unchanged = 0.0
                 self.run = 0.0
@@ -190,18 +203,20 @@ class TunewrightRelay:
         self.powered = True
         self.start_last = start
 
-        # The end by the operator: u goes back at once.
-        u = u_controller
+        # The end by the operator: u goes back first, then the controller has it.
+        u = u_given
         recording = False
         if not start:
             if (not (self.mode_now != 1)) or ((not (self.mode_now != 2)) or (not (self.mode_now != 3))):
+                self.mode_now = 4
                 self.reason_now = 3
-                u = self.u0
+                self.target = self.u0
             else:
-                if self.mode_now != 0:
+                if (self.mode_now != 0) and (not ((not (self.mode_now != 4)) and (self.u_last != self.target))):
                     u = self.u_last
+                    self.mode_now = 0
+        if not (self.mode_now != 0):
             self.u_last = u
-            self.mode_now = 0
         running = (not (self.mode_now != 1)) or ((not (self.mode_now != 2)) or (not (self.mode_now != 3)))
 
         # The faults, the gravest first. A value that is not a number equals nothing, itself included.
@@ -211,26 +226,32 @@ class TunewrightRelay:
         difference = u_actual - self.u_last
         if difference < 0.0:
             difference = -difference
-        if running and ((not measurement_ok) or (measurement != measurement)):
+        watched = running or (not (self.mode_now != 4))
+        if watched and ((not measurement_ok) or (measurement != measurement)):
             self.mode_now = 5
             self.reason_now = 10
             running = False
+            watched = False
         if running and (not ((elapsed_now > 0.0) and (not (elapsed_now > self.longest_gap)))):
             self.mode_now = 5
             self.reason_now = 15
             running = False
-        if running and ((u_actual < 1.0e30) and ((self.t >= 0.0) and (difference > self.u_tolerance))):
+            watched = False
+        if running and ((self.t >= 0.0) and ((u_actual != u_actual) or ((u_actual < 1.0e30) and (difference > self.u_tolerance)))):
             self.mode_now = 5
             self.reason_now = 14
             running = False
-        if running and (measurement < self.y_min):
+            watched = False
+        if watched and (measurement < self.y_min):
             self.mode_now = 5
             self.reason_now = 12
             running = False
-        if running and (measurement > self.y_max):
+            watched = False
+        if watched and (measurement > self.y_max):
             self.mode_now = 5
             self.reason_now = 13
             running = False
+            watched = False
         if running:
             self.t = self.t + elapsed_now
             if not (self.calls > 0.0):
@@ -247,15 +268,27 @@ class TunewrightRelay:
             self.mode_now = 5
             self.reason_now = 11
             running = False
+            watched = False
         if running and (self.t > self.max_time):
             self.mode_now = 5
             self.reason_now = 18
             running = False
+            watched = False
 
         # The quiet time: the noise of y, from its changes from call to call.
         if running and (not (self.mode_now != 1)):
             self.calls = self.calls + 1.0
             self.sum = self.sum + (measurement - self.y0)
+            if measurement - self.y0 > self.highest:
+                self.highest = measurement - self.y0
+            if measurement - self.y0 < self.lowest:
+                self.lowest = measurement - self.y0
+            if change > self.largest:
+                self.second = self.largest
+                self.largest = change
+            else:
+                if change > self.second:
+                    self.second = change
             if self.calls > 1.0:
                 self.changes = self.changes + change
                 if change > 0.0:
@@ -266,8 +299,12 @@ class TunewrightRelay:
                 if self.run > self.longest_run:
                     self.longest_run = self.run
             if (self.t >= self.quiet_time) and (self.calls > 9.0):
-                self.y0 = self.y0 + self.sum / self.calls
-                self.noise = 0.8862269254527579 * self.changes / (self.calls - 1.0)
+                self.noise = 0.8862269254527579 * (self.changes - self.largest - self.second) / (self.calls - 3.0)
+                if self.largest > 8.0 * self.noise:
+                    self.y0 = self.y0 + (self.sum - self.highest - self.lowest) / (self.calls - 2.0)
+                else:
+                    self.noise = 0.8862269254527579 * self.changes / (self.calls - 1.0)
+                    self.y0 = self.y0 + self.sum / self.calls
                 self.hysteresis = 3.0 * self.noise
                 if (5.0 * self.unchanged > self.calls) and (1.5 * self.least_change > self.hysteresis):
                     self.hysteresis = 1.5 * self.least_change

@@ -8,7 +8,7 @@
 
 namespace tunewright::api::mcp {
 
-/// Of a result of any kind: a loop, an operating range, a check or a structure.
+/// For a result of any kind: a loop, an operating range, a check or a structure.
 ToolAnswer short_result(std::string_view result);
 
 ToolAnswer short_model(std::string_view answer);       ///< of an identification

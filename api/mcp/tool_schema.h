@@ -20,7 +20,7 @@ using ShownTypes = std::set<std::string>;
 /// - a description is its first sentence, if that is short, and the unit;
 /// - objects deeper than two levels, and those that an earlier tool shows, are shown by the names of their members.
 ///
-/// What is left out is not lost: a wrong argument is refused with the name, the rule and the cure.
+/// Nothing that is left out is lost: a wrong argument is refused with the name, the rule and the cure.
 Json tool_schema(const SchemaOf& describe, ShownTypes& shown);
 
 /// The schema of one object with the members of both.

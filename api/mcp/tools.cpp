@@ -10,7 +10,7 @@
 namespace tunewright::api::mcp {
 namespace {
 
-/// What the tool does to its surroundings. None writes to a plant or changes what exists; a job is one more in the
+/// Effects of the tool on its surroundings. None writes to a plant or changes what exists; a job is one more in the
 /// store.
 Json annotations(const Tool& tool, const ToolHost& host) {
     const bool stores = tool.makes_job && host.stores_jobs();

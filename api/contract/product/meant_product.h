@@ -1,4 +1,4 @@
-// The products that a user means who types a name that is no id.
+// The products that a user may mean by a name that is not an id.
 #pragma once
 
 #include <string>

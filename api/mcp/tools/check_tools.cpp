@@ -1,4 +1,4 @@
-// What is wrong with loops in operation.
+// Faults of loops in operation.
 #include "api/contract/check/check_request.h"
 #include "api/contract/terms.h"
 #include "api/describe/body.h"

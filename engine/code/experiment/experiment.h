@@ -47,10 +47,10 @@ struct ExperimentOptions {
     Action action = Action::find;                  ///< relay
 };
 
-/// What the output `mode` says.
+/// Values of the output `mode`.
 enum class ExperimentMode { idle, quiet, first_move, test, done, stopped };
 
-/// What the output `reason` says; each has its sentence in the program.
+/// Values of the output `reason`; each has its sentence in the program.
 enum class ExperimentReason {
     none = 0,
     settled = 1,

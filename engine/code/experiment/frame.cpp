@@ -239,7 +239,7 @@ Block ExperimentFrame::end_of_quiet() {
     block.push_back(when(largest_ > kFalse * noise_, {assign(y0_, y0_ + (sum_ - highest_ - lowest_) / (calls_ - 2))},
                          {assign(noise_, deviations * changes_ / (calls_ - 1)), assign(y0_, y0_ + sum_ / calls_)}));
     block.push_back(assign(hysteresis_, kStandardDeviations * noise_));
-    // Where y often stays as it is, its smallest change is the sensor's resolution.
+    // If y often stays as it is, its smallest change is the sensor's resolution.
     block.push_back(when(both(5 * unchanged_ > calls_, kLevels * least_change_ > hysteresis_),
                          {assign(hysteresis_, kLevels * least_change_)}));
     block.push_back(when(hysteresis_min_ > hysteresis_, {assign(hysteresis_, hysteresis_min_)}));

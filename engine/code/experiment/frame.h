@@ -1,4 +1,4 @@
-// What the programs of all experiments share: the start, the faults, the noise, and u.
+// The common part of all experiments' programs: the start, the faults, the noise, and u.
 #pragma once
 
 #include "engine/code/composer.h"

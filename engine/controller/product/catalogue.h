@@ -46,7 +46,7 @@ struct Constructor {
     std::vector<std::string_view> outside = {};
 };
 
-/// Of all products that have one.
+/// All products that have one.
 const std::vector<Constructor>& constructors();
 
 }  // namespace tunewright::product

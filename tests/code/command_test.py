@@ -20,7 +20,7 @@ class CommandTest(unittest.TestCase):
                                "x", "--integral", "simpson", "--anti-windup", "clampin")
         told = {error["pointer"]: error["detail"] for error in problem["errors"]}
         self.assertEqual(sorted(told), ["/anti_windup", "/integral", "/language", "/sample_time", "/u_max"])
-        self.assertIn("it must be st, c or python", told["/language"])
+        self.assertIn("it must be st, c, python or arduino", told["/language"])
         self.assertIn("Did you mean clamping?", told["/anti_windup"])
         for arguments, pointer in ((("--u-min", "5", "--u-max", "-5"), "/u_max"),
                                    (("--derivative", "slope"), "/slope_samples"),

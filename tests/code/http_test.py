@@ -32,6 +32,23 @@ class CodeTest(unittest.TestCase):
             for told in (part, b"TIC-101", b"fopdt, K 2, T 10, L 3", self.job["result"]["request_hash"].encode()):
                 self.assertIn(told, answer.body)
 
+    def test_a_test_that_a_controller_runs_is_a_file_too(self):
+        asked = {"experiment": "relay", "sample_time": 0.5, "u_step": 5, "y_max": 90}
+        for language, media_type, name, part in (
+                ("st", "text/plain", "TunewrightRelay.st", b"FUNCTION_BLOCK TunewrightRelay"),
+                ("c", "text/x-c", "tunewright_relay.h", b"tunewright_relay_step("),
+                ("python", "text/x-python", "tunewright_relay.py", b"class TunewrightRelay:"),
+                ("arduino", "text/x-arduino", "tunewright_relay.ino", b"void loop()")):
+            answer = self.service.post("/v1/experiments/code", {**asked, "language": language})
+            self.assertEqual((answer.status, answer.media_type), (200, media_type))
+            self.assertEqual(answer.headers["Content-Disposition"], 'attachment; filename="%s"' % name)
+            self.assertIn(part, answer.body)
+        for body, pointer in (({**asked, "language": "c", "u_step": 0}, "/u_step"), ({**asked}, "/language"),
+                              ({**asked, "language": "c", "y_move": 2}, "/y_move"),
+                              ({**asked, "language": "c", "quiet_time": 9, "max_time": 5}, "/max_time")):
+            answer = self.service.post("/v1/experiments/code", body)
+            self.assertEqual((answer.status, [each["pointer"] for each in answer.json["errors"]]), (422, [pointer]))
+
     def test_parameters_are_those_of_the_command(self):
         text = self.get(2, "?language=python&sample_time=0.05&integral=trapezoidal&anti_windup=clamping&rate_limit=30").body
         for told in (b"self.Ts = 3.0 ", b"self.rate_limit = 0.5 ", b"trapezoidal rule", b"Anti-windup by clamping",
@@ -41,7 +58,7 @@ class CodeTest(unittest.TestCase):
         self.assertEqual((answer.status, answer.media_type), (422, "application/problem+json"))
         told = {error["pointer"]: error["detail"] for error in answer.json["errors"]}
         self.assertIn("did you mean sample_time?", told["/sampletime"])
-        self.assertIn("it must be st, c or python", told["/language"])
+        self.assertIn("it must be st, c, python or arduino", told["/language"])
         self.assertIn("given twice", answer.body.decode())
 
     def test_what_is_not_there_is_told(self):

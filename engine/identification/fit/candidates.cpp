@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numeric>
 
@@ -143,6 +144,16 @@ std::vector<ModelForm> other_starts(const FitContext& context, const Fit& from_r
 
 }  // namespace
 
+/// y of a relay moves against u, or with it if the gain is negative; about halfway between, it was moved by something
+/// else.
+static int gain_sign(const FitContext& context) {
+    constexpr double kLeastCosine = 0.5;
+    const auto cycle = find_cycle(context.record, context.noise);
+    if (!cycle) return 0;
+    const std::complex<double> G = cycle->harmonics.front().G;
+    return G.real() < -kLeastCosine * std::abs(G) ? 1 : G.real() > kLeastCosine * std::abs(G) ? -1 : 0;
+}
+
 FitContext fit_context(CleanRecord record, bool relay, const RunControl& control) {
     FitContext context;
     context.grid = quantisation_step(record.y);
@@ -152,8 +163,7 @@ FitContext fit_context(CleanRecord record, bool relay, const RunControl& control
     context.record = std::move(record);
     context.start = start_of(context.record, relay, context.noise);
     context.relay = relay;
-    if (relay)
-        if (const auto cycle = find_cycle(context.record, context.noise)) context.gain_sign = cycle->reversed ? -1 : 1;
+    if (relay) context.gain_sign = gain_sign(context);
     context.stop = control.stop;
     context.spread = control.spread;
     return context;

@@ -360,10 +360,13 @@ bool runs_too_long(const Fit& fit) {
 /// Kept if an unstable model explains the beginning alone, with a time constant that it can show.
 void try_beginning(ModelSearch& search, const CleanRecord& record, ModelChoice model, const RunControl& control) {
     if (model != ModelChoice::automatic && model != ModelChoice::fopdt) return;
-    for (const double part : k.beginnings) {
+    std::vector<double> parts(k.beginnings.begin(), k.beginnings.end());
+    if (search.percents[static_cast<std::size_t>(search.choice.index)] < k.badly_fitted_percent)
+        parts.insert(parts.end(), k.more_beginnings.begin(), k.more_beginnings.end());
+    for (const double part : parts) {
         if (control.stop.stop_requested()) return;
         const CleanRecord beginning = first_part(record, part);
-        if (beginning.changes() < k.min_beginning_changes || beginning.samples() < k.min_beginning_samples) return;
+        if (beginning.changes() < k.min_beginning_changes || beginning.samples() < k.min_beginning_samples) continue;
         ModelSearch other = fit_all(fit_context(beginning, true, control), model, {}, control);
         if (!usable(other) || other.chosen().form.structure != Structure::unstable) continue;
         if (at_shortest_lag(other.chosen()) || leaves_a_pattern(other.context, other.chosen())) continue;

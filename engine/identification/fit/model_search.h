@@ -76,7 +76,9 @@ struct ModelSearchConstants {
 
     // Beginnings of relay tests.
     double min_unstable_lag = 0.12;  ///< record lengths: e^(1/0.12) is 4000, the growth of an error at the start
-    std::array<double, 7> beginnings = {0.5, 0.35, 0.25, 0.18, 0.12, 0.07, 0.04};  ///< shares of the record
+    std::array<double, 3> beginnings = {0.35, 0.12, 0.04};            ///< shares of the record
+    std::array<double, 4> more_beginnings = {0.5, 0.25, 0.18, 0.07};  ///< for a whole that is fitted badly
+    double badly_fitted_percent = 85;
     double max_sign_cost = 60;  ///< per cent of the fit for which a gain of the sign of the relay is preferred
     int min_beginning_changes = 3, min_beginning_samples = 40;  ///< a little more than one period of the relay
 };

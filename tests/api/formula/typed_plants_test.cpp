@@ -69,7 +69,7 @@ TEST(TypedPlants, EveryKindOfPlantHasItsFormula) {
     EXPECT_EQ(formula({{"type", "state_space"}, {"A", {{-1, 0}, {1, -2}}}, {"B", {1, 0}}, {"C", {0, 1}}, {"D", 0.5}}),
               "P(s)=([01](sI−[−101−2])−1[10]+0.5)");
     const Json space = asked({{"plant", {{"type", "state_space"}, {"A", {{-1}}}, {"B", {1}}, {"C", {1}}}}});
-    EXPECT_EQ(space["text"], "");
+    EXPECT_EQ(space["text"], "ss([-1], [1], [1], 0)");
 }
 
 TEST(TypedPlants, AFaultStandsAtItsField) {

@@ -204,7 +204,8 @@ class AutotuneTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as name:
             script = pathlib.Path(name, "loop.py")
             script.write_text(LOOP % (str(CLIENT), name, name, name, self.client.base_url))
-            child = subprocess.Popen([sys.executable, str(script)], stderr=subprocess.DEVNULL)
+            child = subprocess.Popen([sys.executable, str(script)], stderr=subprocess.DEVNULL,
+                                     preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
             told = pathlib.Path(name, "u")
             until = time.monotonic() + 30
             while time.monotonic() < until and not (told.exists() and told.read_text() not in ("", "40.0")):

@@ -18,7 +18,7 @@ from service import ROOT, Service
 
 CLIENT = ROOT / "api" / "clients" / "python"
 sys.path[:0] = [str(CLIENT), str(CLIENT / "examples")]
-from tunewright import Client, autotune  # noqa: E402
+from tunewright import Client, TestStopped, autotune  # noqa: E402
 
 U0, TS = 30.0, 0.05
 BROKER = shutil.which("mosquitto") or shutil.which("/usr/sbin/mosquitto")
@@ -63,8 +63,15 @@ class ExamplesTest(unittest.TestCase):
 
     def tuned(self, plant, read, write):
         """The plant is found through the connection, and u is given back."""
-        result = autotune(read, write, U0, sample_time=TS, u_step=10, u_min=0, u_max=100, y_min=0, y_max=90, u_safe=0,
-                          cycles=5, max_time=60, client=self.client, show=None)
+        for left in (2, 1, 0):
+            try:
+                result = autotune(read, write, U0, sample_time=TS, u_step=10, u_min=0, u_max=100, y_min=0, y_max=90,
+                                  u_safe=U0, cycles=5, max_time=60, client=self.client, show=None)
+                break
+            except TestStopped as stopped:  # a loaded machine calls late
+                if stopped.reason != 15 or left == 0:
+                    raise
+                time.sleep(3)
         model = result.result["model"]["plant"]
         self.assertEqual(model["type"], "fopdt")
         for name, value, error in (("K", 1.2, 0.3), ("T", 0.8, 0.3), ("L", 0.25, 0.1)):  # calls come late by milliseconds

@@ -17,6 +17,7 @@ CLIENT = ROOT / "api" / "clients" / "python"
 sys.path.insert(0, str(CLIENT))
 import tunewright  # noqa: E402
 
+MODULES = ("__init__", "answers", "autotune", "bump_program", "client", "notebook", "relay_program", "systems", "tables")
 TYPED_USE = """
 import tunewright
 result = tunewright.Client(key="k").tune(plant="1/(s+1)", tune=["simc", {"method": "robust"}])
@@ -54,11 +55,11 @@ class PackageTest(unittest.TestCase):
         self.assertEqual(self.run_in_folder(self.python, "-c", "import tunewright; print(tunewright.Client.__name__)"),
                          "Client\n")
         kept = sorted(path.name for path in self.source.rglob("*") if "__pycache__" not in path.parts)
-        self.assertEqual(kept, ["README.md", "__init__.py", "answers.py", "backend", "client.py", "notebook.py",
-                                "pyproject.toml", "systems.py", "tables.py", "tunewright", "wheel_backend.py"])
+        self.assertEqual(kept, sorted([
+            "README.md", "backend", "wheel_backend.py", "pyproject.toml", "tunewright", *(name + ".py" for name in MODULES),
+            "examples", "README.md", "modbus.py", "mqtt.py", "opcua.py", "serial_line.py", "simulated.py"]))
         files = re.findall(r"^  (tunewright/\S+\.py)$", shown, re.MULTILINE)
-        self.assertEqual(files, ["tunewright/%s.py" % name for name in ("__init__", "answers", "client", "notebook",
-                                                                       "systems", "tables")])
+        self.assertEqual(files, ["tunewright/%s.py" % name for name in MODULES])
 
     def test_its_source_archive_installs_too_and_both_are_the_same_every_time(self):
         build = ("import sys; sys.path.insert(0, sys.argv[1]); import wheel_backend as backend; "
@@ -71,8 +72,9 @@ class PackageTest(unittest.TestCase):
         self.assertEqual(len(made[0]), 2)
         self.assertEqual(made[0], made[1])
         shutil.unpack_archive(folders[0] / sdist, folders[0])
-        module = folders[0] / sdist[:-len(".tar.gz")] / "tunewright.py"
-        self.assertEqual(module.read_bytes(), (self.source / "tunewright.py").read_bytes())
+        for name in MODULES:
+            module = pathlib.Path("tunewright", name + ".py")
+            self.assertEqual((folders[0] / sdist[:-len(".tar.gz")] / module).read_bytes(), (self.source / module).read_bytes())
         self.run_in_folder(self.python, "-m", "pip", "install", "--no-index", "--force-reinstall", "--no-deps",
                            "--disable-pip-version-check", str(folders[0] / sdist),
                            environment={"PIP_CONFIG_FILE": os.devnull})

@@ -15,8 +15,9 @@ import tarfile
 import zipfile
 from typing import Any, Dict, Optional, Tuple
 
-SOURCES = ("README.md", "backend/wheel_backend.py", "pyproject.toml", "tunewright.py")
 HERE = pathlib.Path(__file__).resolve().parents[1]
+MODULES = sorted((HERE / "tunewright").glob("*.py"))
+SOURCES = ("README.md", "backend/wheel_backend.py", "pyproject.toml", *("tunewright/" + path.name for path in MODULES))
 
 
 def project() -> Dict[str, str]:
@@ -29,7 +30,7 @@ def build_wheel(wheel_directory: str, config_settings: Optional[Dict[str, Any]] 
                 metadata_directory: Optional[str] = None) -> str:
     name = _name()
     files = {
-        **{"tunewright/" + path.name: path.read_bytes() for path in sorted((HERE / "tunewright").glob("*.py"))},
+        **{"tunewright/" + path.name: path.read_bytes() for path in MODULES},
         "tunewright/py.typed": b"",
         name + ".dist-info/METADATA": _metadata(),
         name + ".dist-info/WHEEL": b"Wheel-Version: 1.0\nGenerator: tunewright\nRoot-Is-Purelib: true\nTag: py3-none-any\n",

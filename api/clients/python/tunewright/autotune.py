@@ -25,7 +25,7 @@ Reading = Union[float, Tuple[float, bool]]
 
 _TRIES = 3  # of writing the safe value
 _MOST_COST = 1.5
-_PROGRAMS = {"relay": (relay_program.TunewrightRelay, relay_program.REASONS),
+_PROGRAMS: Dict[str, Any] = {"relay": (relay_program.TunewrightRelay, relay_program.REASONS),
              "bump": (bump_program.TunewrightBump, bump_program.REASONS)}
 _SIGNS = {"reverse": 1.0, "direct": -1.0, "find": 0.0}
 _DONE, _STOPPED = 4, 5  # modes of the programs
@@ -147,8 +147,9 @@ class _Test:
     def __init__(self, experiment: str, asked: Mapping[str, Any], read: Callable[[], Reading],
                  write: Callable[[float], Optional[float]], u: float, clock: Callable[[], float],
                  sleep: Callable[[float], None], keep: Optional[str]) -> None:
-        make, self.reasons = _PROGRAMS[experiment]
+        make, reasons = _PROGRAMS[experiment]
         self.program: Any = make()
+        self.reasons: Dict[int, str] = reasons
         self.read, self.write, self.u, self.clock, self.sleep, self.keep = read, write, u, clock, sleep, keep
         self.rows: List[Tuple[float, float, float]] = []
         self.lost: Optional[Exception] = None  #: that of the last read()
@@ -181,7 +182,7 @@ class _Test:
 
     @property
     def safe(self) -> float:
-        return self.program.u_safe if self.program.u_safe < 1e30 else self.u
+        return float(self.program.u_safe) if self.program.u_safe < 1e30 else self.u
 
     def run(self, designs: "_Designs") -> str:
         """Why it ended. Raises TestStopped, or what the user raised, with u at its safe value."""
@@ -199,6 +200,7 @@ class _Test:
                 raise
             finally:
                 designs.stop()
+        raise AssertionError("unreachable")
 
     def _calls(self, designs: "_Designs", file: Any) -> str:
         start = self.clock()

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 # Step test, written by Tunewright 1.0.0.
 #
 # Sample time   1 s, as asked for

@@ -16,7 +16,7 @@ bool is_revision(std::string_view revision);
 std::string revisions();
 
 /// The answer to a message; "" for a notification, or for an answer of the client. Never changes what other messages
-/// get: there is no session.
+/// get: sessions do not exist.
 std::string answer(const Message& message, ToolHost& host);
 
 /// True for a message that may compute for a while; all others are answered at once.

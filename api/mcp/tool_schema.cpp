@@ -90,7 +90,7 @@ private:
     /// True if the type was shown before; from now on it was.
     bool is_shown(const Json& schema) { return !shown_.insert(schema.value("title", "")).second; }
 
-    /// Where some members are marked as the main ones, only those are shown.
+    /// If some members are marked as the main ones, only those are shown.
     Json object(const Json& schema, int level) {
         if (level >= kLevels || (level > 0 && is_shown(schema)))
             return {{"type", "object"}, {"description", named("Members: ", members(schema))}};

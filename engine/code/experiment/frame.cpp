@@ -105,6 +105,11 @@ void ExperimentFrame::declare_states() {
 }
 
 Expr ExperimentFrame::is(ExperimentMode mode) const { return inverse(mode_now_ != as_whole(mode)); }
+
+Expr ExperimentFrame::runs() const {
+    return either(is(ExperimentMode::quiet), either(is(ExperimentMode::first_move), is(ExperimentMode::test)));
+}
+
 Statement ExperimentFrame::set(ExperimentMode mode) const { return assign(mode_now_, as_whole(mode)); }
 
 Block ExperimentFrame::end(ExperimentReason reason) const {
@@ -125,8 +130,7 @@ Program ExperimentFrame::build() {
     add(when(given_ != given_, {assign(given_, u_last_)}));
     add_start();
     add_stop();
-    running_ = let("running", "true: the test runs",
-                   either(is(ExperimentMode::quiet), either(is(ExperimentMode::first_move), is(ExperimentMode::test))));
+    running_ = let("running", "true: the test runs", runs());
     add_faults();
     add_noise();
     add(remark("The test."));
@@ -170,12 +174,10 @@ Block ExperimentFrame::begin_all() {
 // The controller follows u while mode is not 0: it has followed the last u when it takes over.
 void ExperimentFrame::add_stop() {
     add(remark("The end by the operator: u goes back first, then the controller has it."));
-    const Expr runs =
-        either(is(ExperimentMode::quiet), either(is(ExperimentMode::first_move), is(ExperimentMode::test)));
     const Expr returns = both(is(ExperimentMode::done), u_last_ != target_);
     add(assign(u_, given_));
     add(assign(recording_, truth(false)));
-    add(when(inverse(start_), {when(runs, end(ExperimentReason::by_operator),
+    add(when(inverse(start_), {when(runs(), end(ExperimentReason::by_operator),
                                     {when(both(mode_now_ != whole(0), inverse(returns)),
                                           {assign(u_, u_last_), set(ExperimentMode::idle)})})}));
     add(when(is(ExperimentMode::idle), {assign(u_last_, u_)}));

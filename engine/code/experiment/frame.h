@@ -26,6 +26,8 @@ protected:
     static std::vector<std::string> with_common_notes(std::vector<std::string> own);
 
     Expr is(ExperimentMode mode) const;
+    /// True while u is moved or the noise measured.
+    Expr runs() const;
     Statement set(ExperimentMode mode) const;
     /// Ends the test with u0, or with the safe value.
     Block end(ExperimentReason reason) const;

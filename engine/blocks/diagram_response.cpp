@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "engine/blocks/diagram_steps.h"
 #include "engine/blocks/within_step.h"
@@ -27,6 +28,8 @@ constexpr std::size_t kMany = 4;  // delayed signals
 constexpr double kLowAccuracy = 1e-5;
 constexpr double kNearZero = 4e-5;       // frequency, of 1/time_scale, from which the values at 0 are extrapolated
 constexpr double kManyRates = 2;         // of a step that is used once: a longer one is put together of usual ones
+constexpr double kFinalErrors = 2;       // the final value's rounding is up to twice the third difference's
+constexpr double kLongestRun = 1e9;      // of time_scale: what has not come to rest by then stays near its rounding
 constexpr double kNoError = 1e-9;        // of the step: the error's final value
 constexpr double kNoErrorOfPeak = 1e-7;  // the same, of the largest value of y
 constexpr double kOneLevel = 16;         // by which half the step lowers the error
@@ -72,7 +75,11 @@ public:
         out_.signals_ = static_cast<int>(system.signals());
         out_.inputs_.assign(w_.data(), w_.data() + w_.size());
         largest_ = VectorXd::Zero(system.signals());
-        if (!options.horizon) set_final(diagram);
+        final_error_ = largest_;
+        if (!options.horizon) {
+            set_final(diagram);
+            longest_ = kLongestRun * diagram.time_scale();
+        }
         steps_.emplace(system.F, system.G, input_, 1);
         double h0 = kOfRate / std::max(steps_->rate(), 1e-300);
         for (const auto& delayed : system.delayed) h0 = std::min(h0, kOfDeadTime * delayed.L);
@@ -87,9 +94,14 @@ public:
         for (int step = 0; step < options_.max_steps; ++step) {
             const double t = out_.t_.back();
             if (options_.horizon ? t >= *options_.horizon - slack_ : stopping_.has_settled(t)) return std::move(out_);
+            if (t > longest_) break;
             if (largest_.maxCoeff() > kUnbounded * (1 + w_.cwiseAbs().maxCoeff()) && !options_.horizon) break;
             choose_level();
             take_step(t);
+            if (!node_.allFinite()) {
+                drop_last_node();
+                break;
+            }
         }
         out_.settles_ = false;
         return std::move(out_);
@@ -120,6 +132,8 @@ private:
         }
         const VectorXd value = 4 * at[0] - 6 * at[1] + 4 * at[2] - at[3],
                        slope = (-26 * at[0] + 57 * at[1] - 42 * at[2] + 11 * at[3]) / (6 * h);
+        // The third difference is the rounding of the four values, and what a parabola through three of them misses.
+        final_error_ = (at[0] - 3 * at[1] + 3 * at[2] - at[3]).cwiseAbs();
         out_.final_.assign(value.data(), value.data() + value.size());
         out_.slope_.assign(slope.data(), slope.data() + slope.size());
     }
@@ -144,9 +158,16 @@ private:
                                                       of_inputs_.head(x.size()).cwiseAbs()));
         if (options_.horizon) return;
         double worst = 0;
-        for (Index i = 0; i < x.size(); ++i)
-            if (largest_[i] > 0) worst = std::max(worst, std::abs(x[i] - out_.final_[std::size_t(i)]) / largest_[i]);
+        for (Index i = 0; i < x.size(); ++i) {
+            const double from_rest = std::abs(x[i] - out_.final_[std::size_t(i)]) - kFinalErrors * final_error_[i];
+            if (largest_[i] > 0) worst = std::max(worst, from_rest / largest_[i]);
+        }
         stopping_.note(t, worst, 1, 0, 1);
+    }
+
+    void drop_last_node() {
+        out_.t_.pop_back();
+        out_.values_.resize(out_.values_.size() - static_cast<std::size_t>(node_.size()));
     }
 
     /// Delayed signal k on either side of a time that is not after the last node.
@@ -348,7 +369,9 @@ private:
     Echoes echoes_;
     StoppingRule stopping_;
     DiagramResponse out_;
-    VectorXd largest_;  // of each signal so far
+    VectorXd largest_;      // of each signal so far
+    VectorXd final_error_;  // of final_, which is not known better
+    double longest_ = std::numeric_limits<double>::infinity();
     std::optional<ManyInputsPropagator> steps_;
     std::vector<std::optional<WithinStep>> within_;  // of each level
     double slack_ = 0;

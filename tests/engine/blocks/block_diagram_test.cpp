@@ -8,6 +8,7 @@
 
 #include "engine/blocks/diagram_loop.h"
 #include "engine/blocks/diagram_response.h"
+#include "engine/blocks/diagram_stability.h"
 #include "engine/loop/loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/structure/cascade_diagram.h"
@@ -184,6 +185,39 @@ TEST(DiagramResponse, ASignalThatIsOnlyRoundingCostsNoSteps) {
     const auto nodes = response->pair(y, u, 0).nodes;
     EXPECT_LT(nodes.size(), 1000u);
     for (const ResponseNode& node : nodes) EXPECT_NEAR(node.y, 0, 1e-12);
+}
+
+TEST(DiagramResponse, ARunThatIsAskedForMoreThanRoundingEnds) {
+    // The values at rest are known to about 1e-11. A run that is to come nearer must neither go on until its steps
+    // leave the numbers, nor call that a rest.
+    for (const double lag : {0.3, 2.0, 40.0, 900.0})
+        for (const double L : {0.0, 0.5, 20.0})
+            for (const double settled : {1e-10, 1e-13, 0.0}) {
+                SCOPED_TRACE(std::to_string(lag) + " " + std::to_string(L) + " " + std::to_string(settled));
+                const LinearPlant plant = transfer({1.5}, {lag * 0.4 * L, lag + 0.4 * L, 1}, L);
+                const double gain = 0.3 * (lag + 0.4 * L) / (1.5 * (L + 0.1 * lag));
+                const ParallelPid pid = to_parallel(IdealPid{.Kp = gain, .Ti = lag + L});
+                BlockDiagram diagram;
+                const int y = diagram.add_signal();
+                const auto signals = add_pid(diagram, pid, y);
+                ASSERT_TRUE(signals);
+                diagram.add(signals->output, y, plant);
+                ASSERT_TRUE(count_unstable_poles(diagram).stable());
+                const auto response = DiagramResponse::of(
+                    diagram, {{signals->output, 1}}, {.tolerance = 1e-10, .settled = settled, .max_steps = 200000});
+                ASSERT_TRUE(response);
+                EXPECT_TRUE(response->settles() || settled < 1e-10);
+                EXPECT_LT(response->end(), 1e12);
+                double largest = 0;
+                const auto nodes = response->pair(y, signals->output, 0).nodes;
+                for (const ResponseNode& node : nodes) {
+                    ASSERT_TRUE(std::isfinite(node.y) && std::isfinite(node.u) && std::isfinite(node.t));
+                    largest = std::max(largest, std::abs(node.y));
+                }
+                EXPECT_LT(largest, 1.5 * 1.01);
+                EXPECT_LT(std::abs(nodes.back().y), 1e-9 * largest);
+                EXPECT_NEAR(nodes.back().error_integral, -(lag + L) / gain, 1e-6 * (lag + L) / gain);
+            }
 }
 
 TEST(DiagramResponse, ALoopFarFasterThanTheOthersCostsNoShortSteps) {

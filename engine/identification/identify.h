@@ -111,6 +111,7 @@ struct DataQuality {
     int repeated_times = 0, backward_times = 0;
     bool time_unit_assumed = false;  ///< the unit of the times is not stated; the reader of the file sets this
     std::vector<Saturation> saturation;
+    std::optional<double> backlash;  ///< u after a change of direction that has no effect on y; empty: none found
     std::optional<FalseReadings> outliers;
     std::optional<ClosedLoop> closed_loop;
     std::vector<std::string> notes;
@@ -160,7 +161,9 @@ struct IdentifiedModel {
 ///   which u changes more than twice.
 /// - Rows that are not small compared with the dead time show moves of u late (fit/move_times.h): noted, and included
 ///   in the standard error of L.
-/// - A drift and a lasting load are fitted with the model if the record shows them, and reported as warnings.
+/// - A drift, a lasting load, or a backlash between u and the plant (fit/play.h) are fitted with the model if the
+/// record
+///   shows them, and reported as warnings.
 /// - Further measured inputs (Record::d) are identified with the plant, each with its own gain, lag and dead time
 ///   (further_inputs/further_inputs.h); one that explains nothing is omitted, and a note names it.
 /// - A relay test also gives `limit_cycle`, `frequency_points`; if no structure fits it, the model is constrained to

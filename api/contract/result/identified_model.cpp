@@ -151,6 +151,10 @@ const Description<DataQuality>& quality_contract() {
                    unless<std::vector<Saturation>>(list_of(answer(saturation_contract())),
                                                    [](const auto& levels) { return levels.empty(); }),
                    "Levels at which y is cut off.")
+            .field("backlash", &Q::backlash, maybe(size()),
+                   "Part of a move of u after a change of direction that has no effect on y: backlash or friction, "
+                   "which the model does not contain. Left out: none was found.",
+                   {.unit = "u"})
             .field("outliers", &Q::outliers, maybe(answer(outliers_contract())), "Readings that were left out.")
             .field("closed_loop", &Q::closed_loop, maybe(answer(closed_loop_contract())),
                    "Feedback from y to u, and its treatment.")

@@ -7,6 +7,8 @@
 
 #include "engine/identification/fit/diagnosis.h"
 #include "engine/identification/fit/move_times.h"
+#include "engine/identification/fit/nuisance.h"
+#include "engine/identification/fit/play.h"
 #include "engine/identification/fit/uncertainty.h"
 #include "engine/identification/record/data_quality.h"
 #include "engine/number_text.h"
@@ -29,11 +31,12 @@ std::vector<int> shown(int n) {
 
 FitTrace trace_of(const CleanRecord& r, const std::vector<double>& y_model) {
     FitTrace trace;
+    const std::vector<double>& levels = r.play ? r.v_recorded : r.v_level;
     int change = 0;
     double v = 0;
     for (const int i : shown(r.samples())) {
         trace.t.push_back(r.scale.t_origin + r.scale.t_scale * r.t[i]);
-        for (; change < r.changes() && r.v_time[change] <= r.t[i]; ++change) v = r.v_level[change];
+        for (; change < r.changes() && r.v_time[change] <= r.t[i]; ++change) v = levels[change];
         trace.u.push_back(r.scale.u_rest + r.scale.u_scale * v);
         trace.y.push_back(r.scale.y_origin + r.scale.y_scale * r.y[i]);
         trace.y_model.push_back(r.scale.y_origin + r.scale.y_scale * y_model[i]);
@@ -111,6 +114,19 @@ void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning
                  text(r.scale.t_origin + r.scale.t_scale * fit.shape.load_time(), 4) +
                  ". The model was fitted together with this load; if possible, repeat the test without it."});
     }
+}
+
+/// u was moved by less than the plant noticed: the model is that of the plant behind the play.
+void tell_play(const CleanRecord& r, IdentifiedModel& model) {
+    if (!r.play) return;
+    const double width = r.play->width * r.scale.u_scale;
+    model.data_quality.backlash = width;
+    model.warnings.push_back(
+        {"backlash", "After u turns back, the first " + text(width, 3) +
+                         " of its move have no effect on y: backlash or friction, for example of a valve. The model is "
+                         "that of the plant without it. If u did not move twice in the same direction, K may be too "
+                         "small, and its standard error includes that. A controller with integral action cycles around "
+                         "the set point behind a backlash: have it repaired."});
 }
 
 void note_disturbances(IdentifiedModel& model) {
@@ -215,7 +231,7 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
         Fit& fit = search.fits[i];
         if (!fit.determined) return;
         jacobian(data, fit);
-        take_out_move_times(record, fit);
+        take_out_unknowns(joined(time_unknowns(record, fit), play_unknowns(record, fit)), fit);
         const LoadDoubt load = may_be_answered(i) ? LoadDoubt::counted : LoadDoubt::left_out;
         plants[i] = fitted_plant(record, fit, grid, noise, load);
         if (i != chosen) forget_columns(fit);
@@ -250,6 +266,7 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
         model.data_quality.settled = diagnosis.settled;
         model.warnings = std::move(diagnosis.warnings);
         warn_disturbances(record, fit, model.warnings);
+        tell_play(record, model);
         note_disturbances(model);
         warn_slow_or_integrating(search, model.warnings);
         warn_slow_part(record, fit, model.warnings);

@@ -8,7 +8,7 @@
 //  4. For moves of u in gaps: place them at the missing rows where they explain y best.
 //  5. For moves of u within their rows: estimate their times with the model; for a relay also place its switches where
 //     they explain y best, and keep the better result.
-//  6. A pattern still: a drift, a load, both.
+//  6. A pattern still: a drift, a load, both; or a play between u and the plant.
 //  7. Replace a slow part by a drift if that is as good; then try a drift that leaves no pattern.
 //  8. Determine how late the rows may show u, for the errors of the dead time.
 //
@@ -21,8 +21,10 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "engine/identification/fit/move_times.h"
+#include "engine/identification/fit/play.h"
 #include "engine/identification/fit/record_repair.h"
 #include "engine/identification/record/series.h"
 
@@ -142,7 +144,8 @@ ModelSearch fit_all(FitContext context, ModelChoice model, const Disturbances& d
     return ranked(std::move(context), std::move(fits), plan, disturbances);
 }
 
-/// Fits the chosen structure with disturbances, and the one that it extends.
+/// Fits the chosen structure with disturbances, the one that it extends, and the simplest: the chosen one may have
+/// taken the disturbance for its own response.
 ModelSearch fit_some(const ModelSearch& search, ModelChoice model, const Disturbances& disturbances,
                      const RunControl& control) {
     const Structure chosen = search.chosen().form.structure;
@@ -152,7 +155,8 @@ ModelSearch fit_some(const ModelSearch& search, ModelChoice model, const Disturb
          {Structure::ipdt, Structure::fopdt, Structure::ipdt_lag, Structure::sopdt, chosen}) {
         const bool extended =
             is_integrating(structure) == is_integrating(chosen) && shape_size(structure) < shape_size(chosen);
-        if ((structure == chosen || extended) && !control.stop.stop_requested() &&
+        const bool simplest = structure == Structure::fopdt;
+        if ((structure == chosen || extended || simplest) && !control.stop.stop_requested() &&
             std::none_of(fits.begin(), fits.end(), [&](const Fit& f) { return f.form.structure == structure; }))
             fits.push_back(fit_structure(search.context, structure, disturbances, fits));
     }
@@ -352,6 +356,53 @@ void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& 
     if (usable(whole) && plausible_load(record, whole.chosen())) search = std::move(whole);
 }
 
+/// The record behind the play with which the structure of `start` explains it best, and its models.
+std::optional<ModelSearch> with_play_estimated(const CleanRecord& record, Fit start, ModelChoice model,
+                                               const RunControl& control) {
+    std::optional<ModelSearch> other;
+    for (int round = 0; round < k.play_rounds && !control.stop.stop_requested(); ++round) {
+        std::optional<CleanRecord> moved = with_play(record, start, control.stop);
+        if (!moved) break;
+        ModelSearch next = fit_all(fit_context(std::move(*moved), false, control), model, {}, control);
+        if (!usable(next) || (other && next.chosen().sse >= other->chosen().sse)) break;
+        start = next.chosen();
+        other = std::move(next);
+    }
+    return other;
+}
+
+/// A play between u and the plant, in place of the drift or load that `search` may have; `without` is the search
+/// without any of them. Kept if it explains the record as well as they do: that a load comes together with a move of u
+/// is less likely than a valve with backlash.
+void try_play(ModelSearch& search, const ModelSearch& without, ModelChoice model, const RunControl& control) {
+    RunControl quiet = control;  // a search must not report progress that has been reported before
+    quiet.progress = {};
+    // The structure may be another one with a play: the best integrating and the best other one are tried.
+    std::optional<ModelSearch> other;
+    for (const bool integrating : {false, true}) {
+        const Fit* start = nullptr;
+        for (const std::vector<Fit>* fits : {&std::as_const(search.fits), &without.fits})
+            for (const Fit& fit : *fits)
+                if (fit.determined && is_integrating(fit.form.structure) == integrating &&
+                    (start == nullptr || fit.sse < start->sse))
+                    start = &fit;
+        if (start == nullptr) continue;
+        auto next = with_play_estimated(search.context.record, *start, model, quiet);
+        if (next && (!other || information_criterion(next->chosen(), next->independent) <
+                                   information_criterion(other->chosen(), next->independent)))
+            other = std::move(next);
+    }
+    if (!other || control.stop.stop_requested()) return;
+    const Fit &now = other->chosen(), &plain = without.chosen();
+    // With a pattern left, it only replaces a load or a structure that is missing.
+    if (plain.sse < k.disturbance_min_ratio * now.sse || leaves_a_pattern(other->context, now)) return;
+    const double n = other->independent;
+    const double with_width = information_criterion(now, n) + std::log(n);
+    if (with_width + k.very_strong > information_criterion(plain, n)) return;
+    if (with_width > information_criterion(search.chosen(), n) + k.as_good) return;
+    search = std::move(*other);
+}
+
 /// True if an unstable model's free run lasts so many time constants that it is nearly arbitrary.
 bool runs_too_long(const Fit& fit) {
     return fit.form.structure == Structure::unstable && fit.shape.T() < k.min_unstable_lag;
@@ -390,7 +441,11 @@ ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool rel
     if (unexplained()) try_between_rows(search, model, control);
     if (usable(search) && !control.stop.stop_requested()) try_gap_moves(search, model, control);
     if (usable(search) && !control.stop.stop_requested()) try_moves(search, model, relay, control);
-    if (unexplained()) try_disturbances(search, model, control);
+    if (unexplained()) {
+        const ModelSearch plain = search;
+        try_disturbances(search, model, control);
+        if (!relay && !control.stop.stop_requested()) try_play(search, plain, model, control);
+    }
     if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope) {
         try_drift_for_slow_part(search, model, control);
         if (!search.disturbances.slope) try_drift(search, model, control);

@@ -66,6 +66,7 @@ struct ModelSearchConstants {
 
     // Drifts and loads.
     double min_unexplained_share = 0.005;  ///< of y's variance, for trying one
+    int play_rounds = 2;                   ///< because shape and play change with each other
     double disturbance_min_ratio = 3;
     double disturbance_min_ratio_of_pattern = 30;  ///< the same if a pattern remains, because then a structure is
                                                    ///< missing
@@ -88,7 +89,8 @@ struct ModelSearchConstants {
 /// - in a record that is not evenly sampled, changes of u midway between the rows are tried;
 /// - in a record in which u moves more than once, or y moves slowly before u, a drift and a lasting load at an unknown
 ///   time are tried, and kept if they reduce the sum of squares to a third (a thirtieth if a pattern remains); a load
-///   that cancels a move of u before the plant has responded to it is not accepted;
+///   that cancels a move of u before the plant has responded to it is not accepted; a play between u and the plant
+///   takes their place if it explains the record as well;
 /// - the free run of an unstable plant is meaningless over a long record: in relay tests that no model explains, the
 ///   record's beginning is tried.
 ///

@@ -346,40 +346,22 @@ std::optional<CleanRecord> with_move_times(const CleanRecord& record, const std:
     return placed;
 }
 
-void take_out_move_times(const CleanRecord& record, Fit& fit) {
+InputUnknowns time_unknowns(const CleanRecord& record, const Fit& fit) {
     std::vector<OpenMove> moves;
     for (std::size_t j = 0; j < record.v_open.size(); ++j)
         if (record.v_open[j] > 0) {
             const double seen = *std::ranges::lower_bound(record.t, record.v_time[j]);
             moves.push_back({static_cast<int>(j), seen - record.v_open[j], seen});
         }
-    if (moves.empty() || fit.J.empty()) return;
-    const auto n = static_cast<Eigen::Index>(fit.residual.size());
-    const auto count = static_cast<Eigen::Index>(moves.size()), rows = static_cast<Eigen::Index>(fit.J[0].size());
-    const Eigen::MatrixXd N = slopes_of_moves(record, fit, moves), J = of_samples(fit);
-    const double freedom = std::max(0.2 * static_cast<double>(n), static_cast<double>(n - J.cols()) - 0.5 * count);
-    const double variance = std::max(kVarianceFloor, fit.sse / freedom);
-    Eigen::VectorXd known(count);
+    if (moves.empty()) return {};
+    const auto count = static_cast<Eigen::Index>(moves.size());
+    InputUnknowns unknowns{slopes_of_moves(record, fit, moves), Eigen::VectorXd(count), Eigen::VectorXd(count)};
     for (Eigen::Index k = 0; k < count; ++k) {
         const OpenMove& move = moves[static_cast<std::size_t>(k)];
-        known[k] = std::sqrt(variance) / move.deviation();
-        fit.nuisance_weight.push_back(known[k]);
-        fit.nuisance_rest.push_back(known[k] * (move.middle() - record.v_time[static_cast<std::size_t>(move.place)]));
+        unknowns.deviation[k] = move.deviation();
+        unknowns.rest[k] = move.middle() - record.v_time[static_cast<std::size_t>(move.place)];
     }
-    const Eigen::MatrixXd seen = gram(N, N);
-    Eigen::MatrixXd normal = seen;
-    normal.diagonal() += known.cwiseAbs2();
-    const Eigen::MatrixXd inverse = inverse_of(normal), explained = inverse * gram(N, J);
-    const Eigen::MatrixXd taken = N * explained;
-    for (std::size_t k = 0; k < fit.J.size(); ++k) {
-        const auto column = static_cast<Eigen::Index>(k);
-        for (Eigen::Index i = 0; i < n; ++i) fit.J[k][static_cast<std::size_t>(i)] -= taken(i, column);
-        fit.J[k].resize(static_cast<std::size_t>(rows + count));
-        for (Eigen::Index i = 0; i < count; ++i)
-            fit.J[k][static_cast<std::size_t>(rows + i)] = -known[i] * explained(i, column);
-    }
-    for (Eigen::Index k = 0; k < count; ++k) fit.nuisance.emplace_back(N.col(k).begin(), N.col(k).end());
-    fit.nuisance_freedom = (inverse * seen).trace();
+    return unknowns;
 }
 
 CleanRecord changed_between_rows(CleanRecord record) {

@@ -6,6 +6,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "engine/identification/fit/nuisance.h"
 #include "engine/identification/fit/output_error.h"
 
 namespace tunewright {
@@ -29,10 +30,8 @@ namespace tunewright {
 std::optional<CleanRecord> with_move_times(const CleanRecord& record, const std::vector<double>& times,
                                            const Fit& start, double noise, bool pattern, const std::stop_token& stop);
 
-/// Removes from the columns of `fit.J` the part that the estimated times may explain, and fills `fit.nuisance`: the
-/// remaining part determines the parameters. Rows for the prior knowledge of the times follow those of J. Does nothing
-/// if all times are known.
-void take_out_move_times(const CleanRecord& record, Fit& fit);
+/// The estimated times; what is known of each is the row in which it lies. No unknowns if all times are known.
+InputUnknowns time_unknowns(const CleanRecord& record, const Fit& fit);
 
 /// The record with each change of u midway between the row that shows it and the row before: for a logger that writes
 /// at uneven times and shows changes late. Sets RecordFacts::moved_between_rows; moves at the first row stay.

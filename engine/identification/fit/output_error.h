@@ -68,7 +68,7 @@ struct Fit {
     /// Standard deviation, in J's units, of the target of each row from n_samples on, if it differs from the row's own
     /// noise: 0 for y_rest's, then those of the anchors. As long as those rows; filled by `jacobian`.
     std::vector<double> held_errors;
-    /// Columns of the additional parameters that were removed from J (move_times.h), n_samples each.
+    /// Columns of the additional parameters that were removed from J (nuisance.h), n_samples each.
     std::vector<std::vector<double>> nuisance;
     /// Prior knowledge of each of them, as one row of the least-squares problem: its weight, and its residual. J's last
     /// rows belong to these.

@@ -131,7 +131,7 @@ std::optional<FurtherSteps> further_steps(const std::vector<double>& t, const Fu
 
 /// A record with the same input and facts, without samples, which are most of a long record.
 CleanRecord without_all_samples(const CleanRecord& record) {
-    return {record, {}, {}, {}, record.v_time, record.v_level, record.v_open, record.d};
+    return {record, {}, {}, {}, record.v_time, record.v_level, record.v_open, record.d, record.v_recorded};
 }
 
 /// The mean of v over `blocks` blocks of equal length.

@@ -40,6 +40,12 @@ struct Cleaning {
 /// "line 12" or "row 12".
 std::string row_text(const Cleaning& cleaning, int row);
 
+/// Backlash between u and the plant: positions follow u, but the first `width` after each change of direction is lost.
+struct Play {
+    double width = 0;  ///< dimensionless, above 0
+    double ahead = 0;  ///< share of it that lies in the way of the first move, 0 to 1
+};
+
 /// Facts of a whole record, independent of the choice of samples.
 struct RecordFacts {
     std::optional<double> y_rest;             ///< y0 where the user gave it
@@ -61,6 +67,7 @@ struct RecordFacts {
     /// The rows may show the changes of u late: together they may lie anywhere within an interval of this length around
     /// their recorded times (fit/move_times.h).
     double moved_within = 0;
+    std::optional<Play> play;  ///< the input is behind a play (fit/play.h)
 };
 
 /// A further measured input as changes, dimensionless: at rest at 0, level[j] from time[j] on; |level| <= 1. Times are
@@ -82,6 +89,8 @@ struct CleanRecord : RecordFacts {
     /// Empty: all are known.
     std::vector<double> v_open = {};
     std::vector<FurtherSteps> d = {};  ///< only inputs that move
+    /// With a play: v itself, while v_level are the positions behind it. Otherwise empty.
+    std::vector<double> v_recorded = {};
 
     int samples() const { return static_cast<int>(t.size()); }
     int changes() const { return static_cast<int>(v_time.size()); }

@@ -528,6 +528,7 @@ export type components = {
       backward_times: number;
       time_unit_assumed?: boolean;
       saturation?: components["schemas"]["Saturation"][];
+      backlash?: number;
       outliers?: components["schemas"]["Outliers"];
       closed_loop?: components["schemas"]["ClosedLoop"];
       notes: string[];

@@ -20,6 +20,7 @@ export const UNITS = {
     u0: "u",
     y0: "y",
     u_limits: "u",
+    backlash: "u",
   },
   IdealController: {
     Kp: "u/y",

@@ -26,10 +26,14 @@ constexpr double kOfRate = 0.1;        // first step times the fastest rate
 constexpr int kEchoes = 4, kEchoesOfMany = 3, kEchoesAtLowAccuracy = 2;
 constexpr std::size_t kMany = 4;  // delayed signals
 constexpr double kLowAccuracy = 1e-5;
-constexpr double kNearZero = 4e-5;       // frequency, of 1/time_scale, from which the values at 0 are extrapolated
+// Frequencies, of 1/time_scale, from which the values at 0 are extrapolated. A lower one is taken where its error is
+// this much less: the slope's rounding grows as 1/h.
+constexpr std::array<double, 3> kNearZero = {4e-5, 1e-6, 2e-8};
+constexpr double kMuchLess = 1e-3;
 constexpr double kManyRates = 2;         // of a step that is used once: a longer one is put together of usual ones
 constexpr double kFinalErrors = 2;       // the final value's rounding is up to twice the third difference's
-constexpr double kLongestRun = 1e9;      // of time_scale: what has not come to rest by then stays near its rounding
+constexpr double kMaxFinalError = 1e-8;  // of the signal's largest value
+constexpr double kLongestRun = 1e6;      // of time_scale: what has not come to rest by then stays near its rounding
 constexpr double kNoError = 1e-9;        // of the step: the error's final value
 constexpr double kNoErrorOfPeak = 1e-7;  // the same, of the largest value of y
 constexpr double kOneLevel = 16;         // by which half the step lowers the error
@@ -99,7 +103,7 @@ public:
             choose_level();
             take_step(t);
             if (!node_.allFinite()) {
-                drop_last_node();
+                drop_overflow();
                 break;
             }
         }
@@ -121,9 +125,18 @@ private:
         return system.N.size() > 0 ? std::min(0.99, system.N.cwiseAbs().maxCoeff()) : 0;
     }
 
-    /// The signals' transforms times s at s = 0 and their slope there, from the cubic through h to 4 h.
+    /// The signals' transforms times s at s = 0 and their slope there. A loop that is far slower than its parts needs
+    /// lower frequencies, large values near 0 need higher ones: for each signal those whose values fit a cubic best.
     void set_final(const BlockDiagram& diagram) {
-        const double h = kNearZero / diagram.time_scale();
+        const auto count = static_cast<std::size_t>(system_.signals());
+        final_error_ = VectorXd::Constant(system_.signals(), std::numeric_limits<double>::infinity());
+        out_.final_.assign(count, 0);
+        out_.slope_.assign(count, 0);
+        for (const double near : kNearZero) extrapolate(diagram, near / diagram.time_scale());
+    }
+
+    /// From the cubic through h to 4 h.
+    void extrapolate(const BlockDiagram& diagram, double h) {
         std::array<VectorXd, 4> at;
         for (std::size_t i = 0; i < at.size(); ++i) {
             at[i] = VectorXd::Zero(system_.signals());
@@ -133,9 +146,13 @@ private:
         const VectorXd value = 4 * at[0] - 6 * at[1] + 4 * at[2] - at[3],
                        slope = (-26 * at[0] + 57 * at[1] - 42 * at[2] + 11 * at[3]) / (6 * h);
         // The third difference is the rounding of the four values, and what a parabola through three of them misses.
-        final_error_ = (at[0] - 3 * at[1] + 3 * at[2] - at[3]).cwiseAbs();
-        out_.final_.assign(value.data(), value.data() + value.size());
-        out_.slope_.assign(slope.data(), slope.data() + slope.size());
+        const VectorXd error = (at[0] - 3 * at[1] + 3 * at[2] - at[3]).cwiseAbs();
+        for (Index i = 0; i < error.size(); ++i) {
+            if (!(error[i] < kMuchLess * final_error_[i])) continue;
+            final_error_[i] = error[i];
+            out_.final_[std::size_t(i)] = value[i];
+            out_.slope_[std::size_t(i)] = slope[i];
+        }
     }
 
     /// The values of all signals, then their slopes.
@@ -159,15 +176,21 @@ private:
         if (options_.horizon) return;
         double worst = 0;
         for (Index i = 0; i < x.size(); ++i) {
-            const double from_rest = std::abs(x[i] - out_.final_[std::size_t(i)]) - kFinalErrors * final_error_[i];
+            const double unknown = std::min(kFinalErrors * final_error_[i], kMaxFinalError * largest_[i]),
+                         from_rest = std::abs(x[i] - out_.final_[std::size_t(i)]) - unknown;
             if (largest_[i] > 0) worst = std::max(worst, from_rest / largest_[i]);
         }
         stopping_.note(t, worst, 1, 0, 1);
     }
 
-    void drop_last_node() {
-        out_.t_.pop_back();
-        out_.values_.resize(out_.values_.size() - static_cast<std::size_t>(node_.size()));
+    /// Drops the last nodes whose values left the numbers.
+    void drop_overflow() {
+        const auto size = static_cast<std::size_t>(node_.size());
+        const auto is_finite = [](double value) { return std::isfinite(value); };
+        while (out_.t_.size() > 1 && !std::all_of(out_.values_.end() - node_.size(), out_.values_.end(), is_finite)) {
+            out_.t_.pop_back();
+            out_.values_.resize(out_.values_.size() - size);
+        }
     }
 
     /// Delayed signal k on either side of a time that is not after the last node.

@@ -161,9 +161,8 @@ struct IdentifiedModel {
 ///   which u changes more than twice.
 /// - Rows that are not small compared with the dead time show moves of u late (fit/move_times.h): noted, and included
 ///   in the standard error of L.
-/// - A drift, a lasting load, or a backlash between u and the plant (fit/play.h) are fitted with the model if the
-/// record
-///   shows them, and reported as warnings.
+/// - A drift, a lasting load, or a backlash between u and the plant (fit/play.h) is fitted with the model if the record
+///   shows it, and reported as a warning.
 /// - Further measured inputs (Record::d) are identified with the plant, each with its own gain, lag and dead time
 ///   (further_inputs/further_inputs.h); one that explains nothing is omitted, and a note names it.
 /// - A relay test also gives `limit_cycle`, `frequency_points`; if no structure fits it, the model is constrained to

@@ -359,6 +359,28 @@ bool plausible_load(const CleanRecord& r, const Fit& fit) {
     return true;
 }
 
+/// 0 for an integrator, in addition to which there may be a lag.
+static double slow_lag(const ModelShape& shape) {
+    if (shape.structure == Structure::ipdt) return 0;
+    if (shape.structure == Structure::ipdt_second) return shape.a1();
+    return shape.slowest_lag();
+}
+
+double load_over_move(const CleanRecord& r, const Fit& fit) {
+    constexpr double kOfLag = 0.5;  // of the slowest lag: a load that begins so much later looks like another move
+    constexpr double kRows = 2;
+    constexpr int kFirstMoves = 2;  // later ones are compared with those before them
+    if (!fit.form.load) return 0;
+    const double load = std::abs(fit.linear[fit.form.load_index()] / fit.linear[0]), rows = kRows * usual_spacing(r),
+                 time = fit.shape.load_time(), window = fit.shape.L() + kOfLag * slow_lag(fit.shape) + rows;
+    double ratio = 0;
+    for (int j = 0; j < std::min(kFirstMoves, r.changes()); ++j) {
+        const double move = std::abs(r.v_level[j] - (j > 0 ? r.v_level[j - 1] : 0));
+        if (move > 0 && time > r.v_time[j] - rows && time < r.v_time[j] + window) ratio = std::max(ratio, load / move);
+    }
+    return ratio;
+}
+
 std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& criteria,
                        const std::vector<double>& percents, int chosen, double independent_samples) {
     const auto at = [](int i) { return static_cast<std::size_t>(i); };

@@ -92,6 +92,11 @@ bool shows_drift(const CleanRecord& record);
 /// it: such a load replaces the plant's own response. True without a load.
 bool plausible_load(const CleanRecord& record, const Fit& fit);
 
+/// Size of the load of `fit` over that of the move of u, one of the first two, in whose response it begins: the record
+/// does not show then whether the moves have different effects instead, as behind a backlash or with a gain that
+/// varies. 0 without such a move.
+double load_over_move(const CleanRecord& record, const Fit& fit);
+
 struct StructureChoice {
     int index = -1;  ///< index of the fit; -1: none is determined
     std::string reason;

@@ -112,7 +112,11 @@ void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning
              "According to the fit, a lasting load as large as " + text(size, 3) +
                  " of u reached the plant at about t = " +
                  text(r.scale.t_origin + r.scale.t_scale * fit.shape.load_time(), 4) +
-                 ". The model was fitted together with this load; if possible, repeat the test without it."});
+                 ". The model was fitted together with this load; if possible, repeat the test without it." +
+                 (load_over_move(r, fit) > 0
+                      ? " It begins together with a move of u, which may have another effect instead, as behind a "
+                        "backlash or with a gain that varies: the standard error of K includes this."
+                      : "")});
     }
 }
 
@@ -124,9 +128,9 @@ void tell_play(const CleanRecord& r, IdentifiedModel& model) {
     model.warnings.push_back(
         {"backlash", "After u turns back, the first " + text(width, 3) +
                          " of its move have no effect on y: backlash or friction, for example of a valve. The model is "
-                         "that of the plant without it. If u did not move twice in the same direction, K may be too "
-                         "small, and its standard error includes that. A controller with integral action cycles around "
-                         "the set point behind a backlash: have it repaired."});
+                         "that of the plant without it. Where the record does not show how much of the first move was "
+                         "lost too, K may be larger, and its standard error includes that. A controller with integral "
+                         "action cycles around the set point behind a backlash: have it repaired."});
 }
 
 void note_disturbances(IdentifiedModel& model) {
@@ -203,6 +207,13 @@ void widen_gain(FittedPlant& plant, double variance) {
     }
 }
 
+/// A load that begins with the response to a move may be another effect of that move: K as of the other moves, or as of
+/// this one.
+void widen_for_load_at_move(const CleanRecord& record, const Fit& fit, FittedPlant& plant) {
+    const double apart = load_over_move(record, fit) * plant.values.at("K");
+    if (apart != 0) widen_gain(plant, std::pow(plant.standard_errors.at("K"), 2) + apart * apart);
+}
+
 /// The columns take most of the memory of a long record's fits.
 void forget_columns(Fit& fit) {
     fit.J.clear();
@@ -242,6 +253,7 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
         std::erase_if(open, [&](const OpenChoice& other) { return !knows_gain(plants[other.index]); });
     for (const OpenChoice& other : open) model.alternatives.push_back(plants[other.index].plant);
     if (!open.empty()) widen_gain(plants[chosen], open_choice_variance(plants[chosen], plants, open));
+    widen_for_load_at_move(record, search.fits[chosen], plants[chosen]);
     plants[chosen].covariance.reach = region_reach(record, search.fits[chosen], plants[chosen]);
     forget_columns(search.fits[chosen]);
     std::vector<int> order(search.fits.size());

@@ -373,7 +373,8 @@ std::optional<ModelSearch> with_play_estimated(const CleanRecord& record, Fit st
 
 /// A play between u and the plant, in place of the drift or load that `search` may have; `without` is the search
 /// without any of them. Kept if it explains the record as well as they do: that a load comes together with a move of u
-/// is less likely than a valve with backlash.
+/// is less likely than a valve with backlash. Not for relay tests: with two levels of u, which have different effects,
+/// the gain may also be another one to each side.
 void try_play(ModelSearch& search, const ModelSearch& without, ModelChoice model, const RunControl& control) {
     RunControl quiet = control;  // a search must not report progress that has been reported before
     quiet.progress = {};

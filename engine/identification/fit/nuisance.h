@@ -1,4 +1,5 @@
-// Unknowns of the recorded input, such as the times of its moves, that are estimated in addition to a model's parameters.
+// Unknowns of the recorded input, such as the times of its moves, that are estimated in addition to a model's
+// parameters.
 #pragma once
 
 #include <Eigen/Core>

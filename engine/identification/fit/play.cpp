@@ -38,14 +38,20 @@ CleanRecord with(const CleanRecord& record, const Play& play) {
     return moved;
 }
 
-bool turns_back(const std::vector<double>& levels) {
-    double before = 0, direction = 0;
-    for (const double level : levels) {
-        const double move = level - before;
-        if (direction * move < 0) return true;
-        direction = move;
-        before = level;
-    }
+/// True if at one level of u there are two positions: a gain that varies with the level has only one.
+bool shows_hysteresis(const std::vector<double>& levels, const Play& play) {
+    constexpr double kSameLevel = 0.1, kApart = 0.5;  // of the width
+    const std::vector<double> positions = positions_of(levels, play);
+    const auto apart = [&](double level, double position, std::size_t from) {
+        for (std::size_t j = from; j < levels.size(); ++j)
+            if (std::abs(levels[j] - level) <= kSameLevel * play.width &&
+                std::abs(positions[j] - position) >= kApart * play.width)
+                return true;
+        return false;
+    };
+    if (apart(0, 0, 0)) return true;
+    for (std::size_t j = 0; j < levels.size(); ++j)
+        if (apart(levels[j], positions[j], j + 1)) return true;
     return false;
 }
 
@@ -122,8 +128,8 @@ Eigen::VectorXd step_with_model(const Fit& fit, const Eigen::MatrixXd& N) {
     return least_squares(all, Eigen::Map<const Eigen::VectorXd>(fit.residual.data(), n)).tail(N.cols());
 }
 
-/// The play's width, and with `open` its share ahead, for all samples: Gauss-Newton on them together with the model, from
-/// values that are nearly right.
+/// The play's width, and with `open` its share ahead, for all samples: Gauss-Newton on them together with the model,
+/// from values that are nearly right.
 Play refined(const CleanRecord& record, Play play, const Fit& start, bool open, const std::stop_token& stop) {
     constexpr int kRounds = 3;
     constexpr Effort kEffort{4, 1e-6};
@@ -151,14 +157,15 @@ std::optional<CleanRecord> with_play(const CleanRecord& record, const Fit& fit, 
     constexpr int kMaxMoves = 100;
     constexpr double kMinWidth = 0.01;      // of the range of u
     constexpr double kStrongEvidence = 10;  // of the criterion (Kass and Raftery 1995, section 3.2)
-    if (record.play || record.changes() > kMaxMoves || !turns_back(record.v_level)) return std::nullopt;
+    if (record.play || record.changes() > kMaxMoves || !record.d.empty()) return std::nullopt;
     PlayFit engaged(record, fit, stop), open(record, fit, stop);
     const Play closed = engaged.run(false), free = open.run(true);
     const double n = effective_samples(engaged.fit().residual);
     const bool ahead = n * std::log(engaged.fit().sse / std::max(open.fit().sse, kVarianceFloor)) > kStrongEvidence;
     const Play found = ahead ? free : closed;
     if (stop.stop_requested() || found.width < kMinWidth * swing(record.v_level)) return std::nullopt;
-    return with(record, refined(record, found, (ahead ? open : engaged).fit(), ahead, stop));
+    const Play play = refined(record, found, (ahead ? open : engaged).fit(), ahead, stop);
+    return shows_hysteresis(record.v_level, play) ? std::optional(with(record, play)) : std::nullopt;
 }
 
 InputUnknowns play_unknowns(const CleanRecord& record, const Fit& fit) {
@@ -170,7 +177,8 @@ InputUnknowns play_unknowns(const CleanRecord& record, const Fit& fit) {
     const auto positions = [&](double width, double ahead) {
         return positions_of(record.v_recorded, {width, std::clamp(ahead / width, 0.0, 1.0)});
     };
-    const double ahead = at.width * at.ahead, low = std::max(0.0, ahead - step), high = std::min(at.width, ahead + step);
+    const double ahead = at.width * at.ahead, low = std::max(0.0, ahead - step),
+                 high = std::min(at.width, ahead + step);
     const std::array ends = {std::array{positions(at.width - step, ahead), positions(at.width + step, ahead)},
                              std::array{positions(at.width, low), positions(at.width, high)}};
     const std::array spans = {2 * step, high - low};

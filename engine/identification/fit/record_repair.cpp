@@ -71,7 +71,8 @@ double min_miss(const CleanRecord& whole, const std::vector<std::size_t>& left_o
     for (const std::size_t i : left_out) times.push_back(whole.t[i]);
     const ModelForm& form = there.form;
     const int derivatives = form.gains() - 1;
-    unit_response(times, {whole.v_time, whole.v_level}, there.shape, derivatives, response);
+    const CleanRecord& input = found.context.record;  // as the model sees it: placed moves, or behind a play
+    unit_response(times, {input.v_time, input.v_level}, there.shape, derivatives, response);
     unit_response(times, {kAtOnce, kUnit}, there.shape, derivatives, level);
     CleanRecord unseen{found.context.record, times, {}, {}, {}, {}, {}, found.context.record.d};
     std::vector<std::vector<double>> further;

@@ -16,8 +16,8 @@ using namespace tunewright::testing;
 
 constexpr double kNoise = 0.01;
 
-/// The response to u behind a play of this width: `above` of it lies in the way of a first move upwards. By the rule of a
-/// pin in a slot, which is pushed by its ends.
+/// The response to u behind a play of this width: `above` of it lies in the way of a first move upwards. By the rule of
+/// a pin in a slot, which is pushed by its ends.
 Record behind_play(const std::vector<double>& t, double u0, const Steps& steps, double width, double above,
                    const StepCurve& response) {
     Steps positions;
@@ -40,8 +40,8 @@ TEST(PlayTest, TestsThatGoTwiceEachWayShowGainAndWidth) {
     for (const double width : {0.1, 0.3, 0.6}) {
         for (const double share : {0.0, 0.5, 1.0}) {
             for (unsigned seed = 1; seed <= 2; ++seed) {
-                Record record = behind_play(even_times(1050, 0.2), 10, kTwiceEachWay, width, share * width,
-                                            first_order(2, 8, 2));
+                Record record =
+                    behind_play(even_times(1050, 0.2), 10, kTwiceEachWay, width, share * width, first_order(2, 8, 2));
                 add_noise(record, kNoise, seed);
                 const IdentifiedModel model = identified(record);
                 const auto plant = plant_as<Fopdt>(model);
@@ -58,8 +58,8 @@ TEST(PlayTest, TestsThatGoTwiceEachWayShowGainAndWidth) {
     }
 }
 
-/// A test there and back does not show how much of the play its first move found in its way: K is between the gain of that
-/// move and more, and its standard error says so.
+/// A test there and back does not show how much of the play its first move found in its way: K is between the gain of
+/// that move and more, and its standard error says so.
 TEST(PlayTest, OfATestThereAndBackTheGainIsALowerBound) {
     constexpr double kWidth = 0.4;
     int covered = 0, records = 0;
@@ -90,7 +90,8 @@ TEST(PlayTest, IsFoundDownwardsAndBehindIntegrators) {
     EXPECT_NEAR(*falling.data_quality.backlash, 0.3, 0.02);
     EXPECT_NEAR(plant_as<Fopdt>(falling).K, -1, 0.02);
 
-    Record level = behind_play(even_times(800, 0.25), 10, {{10, 11}, {60, 10}, {110, 9}, {160, 10}}, 0.3, 0, ramp(0.1, 4));
+    Record level =
+        behind_play(even_times(800, 0.25), 10, {{10, 11}, {60, 10}, {110, 9}, {160, 10}}, 0.3, 0, ramp(0.1, 4));
     add_noise(level, kNoise, 5);
     const IdentifiedModel integrating = identified(level);
     ASSERT_TRUE(integrating.data_quality.backlash);
@@ -105,8 +106,8 @@ TEST(PlayTest, IsNotFoundWhereThereIsNone) {
     int found = 0, answered = 0;
     for (unsigned seed = 1; seed <= 30; ++seed) {
         const Steps& steps = seed % 2 == 0 ? kThereAndBack : kTwiceEachWay;
-        const StepCurve response =
-            seed % 3 == 0 ? two_lags(1.5, between(4, 8), between(1, 3), 2) : first_order(2, between(4, 12), between(1, 4));
+        const StepCurve response = seed % 3 == 0 ? two_lags(1.5, between(4, 8), between(1, 3), 2)
+                                                 : first_order(2, between(4, 12), between(1, 4));
         const auto t = even_times(1050, 0.2);
         Record record = simulate(t, 10, 20, steps, response);
         const double load = between(-0.8, 0.8), at = between(15, 150), slope = between(-0.01, 0.01);
@@ -122,6 +123,54 @@ TEST(PlayTest, IsNotFoundWhereThereIsNone) {
     }
     EXPECT_GE(answered, 25);
     EXPECT_EQ(found, 0);
+}
+
+/// Gains that differ to both sides of rest leave y where it was at each level of u, as no play does.
+TEST(PlayTest, IsNotTakenForAGainThatVaries) {
+    for (const double lower : {0.6, 0.8, 1.3}) {
+        const Steps steps = {{10, 11}, {70, 9}, {130, 10}}, seen = {{10, 11}, {70, 10 - lower}, {130, 10}};
+        Record record = simulate(even_times(950, 0.2), 10, 20, seen, first_order(2, 8, 2));
+        record.u = simulate(even_times(950, 0.2), 10, 20, steps, first_order(2, 8, 2)).u;
+        add_noise(record, kNoise, 4);
+        const auto model = identify(record, {}, {});
+        EXPECT_FALSE(model && model->data_quality.backlash) << lower;
+    }
+}
+
+/// The disturbance that moves together with u explains what a play would.
+TEST(PlayTest, IsNotTakenForAMeasuredDisturbance) {
+    Record record = simulate(even_times(700, 0.2), 10, 20, kThereAndBack, first_order(2, 8, 2));
+    const Record other = simulate(even_times(700, 0.2), 0, 0, {{70, 1}}, first_order(0.6, 8, 2));
+    for (std::size_t i = 0; i < record.y.size(); ++i) record.y[i] += other.y[i];
+    record.d = {{"feed", other.u}};
+    add_noise(record, kNoise, 4);
+    const IdentifiedModel model = identified(record);
+    EXPECT_FALSE(model.data_quality.backlash);
+    ASSERT_EQ(model.disturbances.size(), 1u);
+    EXPECT_NEAR(plant_as<Fopdt>(model).K, 2, 0.02);
+    EXPECT_LT(model.standard_errors.at("K"), 0.02);
+}
+
+/// With a drift in addition the play is not found; the load that is found instead begins with a move, and K's error
+/// covers both moves' gains.
+TEST(PlayTest, ALoadThatComesWithAMoveMakesTheGainUncertain) {
+    for (const double drift : {0.002, -0.002}) {
+        Record record = behind_play(even_times(650, 0.2), 10, kThereAndBack, 0.3, 0, first_order(2, 8, 2));
+        for (std::size_t i = 0; i < record.y.size(); ++i) record.y[i] += drift * record.t[i];
+        add_noise(record, kNoise, 2);
+        const IdentifiedModel model = identified(record);
+        EXPECT_TRUE(model.data_quality.backlash || warns(model, "load-disturbance"));
+        EXPECT_LT(std::abs(plant_as<Fopdt>(model).K - 2), 2 * model.standard_errors.at("K"));
+    }
+    // Far from the moves it does not.
+    Record record = simulate(even_times(650, 0.2), 10, 20, kThereAndBack, first_order(2, 8, 2));
+    const Record load = simulate(even_times(650, 0.2), 0, 0, {{45, 0.3}}, first_order(2, 8, 0));
+    for (std::size_t i = 0; i < record.y.size(); ++i) record.y[i] += load.y[i];
+    add_noise(record, kNoise, 2);
+    const IdentifiedModel model = identified(record);
+    EXPECT_TRUE(warns(model, "load-disturbance"));
+    EXPECT_NEAR(plant_as<Fopdt>(model).K, 2, 0.02);
+    EXPECT_LT(model.standard_errors.at("K"), 0.02);
 }
 
 }  // namespace

@@ -159,9 +159,11 @@ struct IdentifiedModel {
 /// - `model` automatic fits every structure and keeps the one with the least information criterion, or the simpler one
 ///   if they are equal within noise. `fopdt` may have T < 0 (K is then negative too for 1/(s - 1)) for a record in
 ///   which u changes more than twice.
-/// - Rows that are not small compared with the dead time show moves of u late (fit/move_times.h): noted, and included
+/// - Rows that are not small compared with the dead time show moves of u late (search/move_times.h): noted, and
+/// included
 ///   in the standard error of L.
-/// - A drift, a lasting load, or a backlash between u and the plant (fit/play.h) is fitted with the model if the record
+/// - A drift, a lasting load, or a backlash between u and the plant (search/play.h) is fitted with the model if the
+/// record
 ///   shows it, and reported as a warning.
 /// - Further measured inputs (Record::d) are identified with the plant, each with its own gain, lag and dead time
 ///   (further_inputs/further_inputs.h); one that explains nothing is omitted, and a note names it.

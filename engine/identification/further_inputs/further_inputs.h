@@ -1,7 +1,7 @@
 // Models of further measured inputs, identified together with the plant.
 #pragma once
 
-#include "engine/identification/fit/model_search.h"
+#include "engine/identification/search/model_search.h"
 
 namespace tunewright {
 

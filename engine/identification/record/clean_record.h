@@ -59,15 +59,15 @@ struct RecordFacts {
     int u_only = 0;   ///< of these, rows whose u counts
     bool moved_between_rows =
         false;                ///< each change of u was put midway between the row that shows it and the previous row
-    int moves_placed = 0;     ///< changes of u that were placed at missing rows (fit/record_repair.h)
-    int switches_placed = 0;  ///< a relay's switches that were placed between rows (fit/record_repair.h)
+    int moves_placed = 0;     ///< changes of u that were placed at missing rows (search/record_repair.h)
+    int switches_placed = 0;  ///< a relay's switches that were placed between rows (search/record_repair.h)
     /// No change of u was recorded: each was put into the middle of the missing rows before it, whose length is at
     /// least this.
     double moves_unseen = 0;
     /// The rows may show the changes of u late: together they may lie anywhere within an interval of this length around
-    /// their recorded times (fit/move_times.h).
+    /// their recorded times (search/move_times.h).
     double moved_within = 0;
-    std::optional<Play> play;  ///< the input is behind a play (fit/play.h)
+    std::optional<Play> play;  ///< the input is behind a play (search/play.h)
 };
 
 /// A further measured input as changes, dimensionless: at rest at 0, level[j] from time[j] on; |level| <= 1. Times are
@@ -85,7 +85,7 @@ struct CleanRecord : RecordFacts {
     std::vector<double> t, y;
     std::vector<int> row;  ///< number of each sample's row, as in Cleaning; empty if samples were chosen or averaged
     std::vector<double> v_time, v_level;
-    /// Length of time within which each change of u was estimated (fit/move_times.h); 0: its time is known.
+    /// Length of time within which each change of u was estimated (search/move_times.h); 0: its time is known.
     /// Empty: all are known.
     std::vector<double> v_open = {};
     std::vector<FurtherSteps> d = {};  ///< only inputs that move

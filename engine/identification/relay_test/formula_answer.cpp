@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "engine/identification/fit/model_answer.h"
 #include "engine/identification/record/series.h"
+#include "engine/identification/search/model_answer.h"
 #include "engine/number_text.h"
 
 namespace tunewright {

@@ -1,4 +1,4 @@
-#include "engine/identification/fit/candidates.h"
+#include "engine/identification/search/candidates.h"
 
 #include <algorithm>
 #include <cmath>

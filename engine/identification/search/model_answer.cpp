@@ -1,16 +1,16 @@
-#include "engine/identification/fit/model_answer.h"
+#include "engine/identification/search/model_answer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
-#include "engine/identification/fit/diagnosis.h"
-#include "engine/identification/fit/move_times.h"
 #include "engine/identification/fit/nuisance.h"
-#include "engine/identification/fit/play.h"
 #include "engine/identification/fit/uncertainty.h"
 #include "engine/identification/record/data_quality.h"
+#include "engine/identification/search/diagnosis.h"
+#include "engine/identification/search/move_times.h"
+#include "engine/identification/search/play.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
 

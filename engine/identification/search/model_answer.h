@@ -1,9 +1,9 @@
 // The result of the identification in the units of the record: the parts of an IdentifiedModel.
 #pragma once
 
-#include "engine/identification/fit/model_search.h"
 #include "engine/identification/identify.h"
 #include "engine/identification/relay_test/relay_fourier.h"
+#include "engine/identification/search/model_search.h"
 
 namespace tunewright {
 

@@ -1,4 +1,4 @@
-#include "engine/identification/fit/move_times.h"
+#include "engine/identification/search/move_times.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/identification/fit/record_repair.h"
 #include "engine/identification/fit/residual_noise.h"
 #include "engine/identification/record/series.h"
+#include "engine/identification/search/record_repair.h"
 #include "engine/numerics/matrix/dense.h"
 
 namespace tunewright {

@@ -1,4 +1,4 @@
-#include "engine/identification/fit/record_repair.h"
+#include "engine/identification/search/record_repair.h"
 
 #include <algorithm>
 #include <cmath>

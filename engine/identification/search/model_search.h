@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "engine/expected.h"
-#include "engine/identification/fit/candidates.h"
 #include "engine/identification/record/series.h"
+#include "engine/identification/search/candidates.h"
 #include "engine/progress.h"
 
 namespace tunewright {

@@ -1,4 +1,4 @@
-#include "engine/identification/fit/play.h"
+#include "engine/identification/search/play.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "engine/identification/fit/candidates.h"
 #include "engine/identification/record/series.h"
+#include "engine/identification/search/candidates.h"
 #include "engine/numerics/matrix/dense.h"
 
 namespace tunewright {

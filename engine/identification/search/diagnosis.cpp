@@ -1,4 +1,4 @@
-#include "engine/identification/fit/diagnosis.h"
+#include "engine/identification/search/diagnosis.h"
 
 #include <Eigen/Core>
 #include <algorithm>

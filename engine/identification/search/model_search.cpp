@@ -13,7 +13,7 @@
 //  8. Determine how late the rows may show u, for the errors of the dead time.
 //
 // The order matters: a misplaced move of u looks like a lag or a drift, and a drift explains part of a lag's response.
-#include "engine/identification/fit/model_search.h"
+#include "engine/identification/search/model_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,10 +23,10 @@
 #include <string>
 #include <utility>
 
-#include "engine/identification/fit/move_times.h"
-#include "engine/identification/fit/play.h"
-#include "engine/identification/fit/record_repair.h"
 #include "engine/identification/record/series.h"
+#include "engine/identification/search/move_times.h"
+#include "engine/identification/search/play.h"
+#include "engine/identification/search/record_repair.h"
 
 namespace tunewright {
 namespace {

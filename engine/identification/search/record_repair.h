@@ -8,8 +8,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "engine/identification/fit/model_search.h"
 #include "engine/identification/fit/output_error.h"
+#include "engine/identification/search/model_search.h"
 
 namespace tunewright {
 

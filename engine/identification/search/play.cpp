@@ -38,26 +38,29 @@ CleanRecord with(const CleanRecord& record, const Play& play) {
     return moved;
 }
 
-/// True if at one level of u there are two positions: a gain that varies with the level has only one.
-bool shows_hysteresis(const std::vector<double>& levels, const Play& play) {
-    constexpr double kSameLevel = 0.1, kApart = 0.5;  // of the width
-    const std::vector<double> positions = positions_of(levels, play);
-    const auto apart = [&](double level, double position, std::size_t from) {
-        for (std::size_t j = from; j < levels.size(); ++j)
-            if (std::abs(levels[j] - level) <= kSameLevel * play.width &&
-                std::abs(positions[j] - position) >= kApart * play.width)
-                return true;
-        return false;
-    };
-    if (apart(0, 0, 0)) return true;
-    for (std::size_t j = 0; j < levels.size(); ++j)
-        if (apart(levels[j], positions[j], j + 1)) return true;
-    return false;
-}
-
 double swing(const std::vector<double>& levels) {
     const auto [low, high] = std::ranges::minmax(levels);
     return std::max(high, 0.0) - std::min(low, 0.0);
+}
+
+/// True if u returns to a level, to `near`, at a position that is `apart` from the one before.
+bool returns_apart(std::vector<double> levels, std::vector<double> positions, double near, double apart) {
+    levels.push_back(0), positions.push_back(0);  // at first
+    for (std::size_t i = 0; i < levels.size(); ++i)
+        for (std::size_t j = i + 1; j < levels.size(); ++j)
+            if (std::abs(levels[i] - levels[j]) <= near && std::abs(positions[i] - positions[j]) >= apart) return true;
+    return false;
+}
+
+/// True if at one level of u there are two positions: a gain that varies with the level has only one.
+bool shows_hysteresis(const std::vector<double>& levels, const Play& play) {
+    constexpr double kSameLevel = 0.1, kApart = 0.5;  // of the width
+    return returns_apart(levels, positions_of(levels, play), kSameLevel * play.width, kApart * play.width);
+}
+
+/// False if u returns to no level, so that no play shows.
+bool returns(const std::vector<double>& levels) {
+    return returns_apart(levels, std::vector<double>(levels.size(), 0), 0.1 * swing(levels), 0);
 }
 
 /// The search over width and share of the play, and the model's shape.
@@ -157,7 +160,8 @@ std::optional<CleanRecord> with_play(const CleanRecord& record, const Fit& fit, 
     constexpr int kMaxMoves = 100;
     constexpr double kMinWidth = 0.01;      // of the range of u
     constexpr double kStrongEvidence = 10;  // of the criterion (Kass and Raftery 1995, section 3.2)
-    if (record.play || record.changes() > kMaxMoves || !record.d.empty()) return std::nullopt;
+    if (record.play || record.changes() > kMaxMoves || !record.d.empty() || !returns(record.v_level))
+        return std::nullopt;
     PlayFit engaged(record, fit, stop), open(record, fit, stop);
     const Play closed = engaged.run(false), free = open.run(true);
     const double n = effective_samples(engaged.fit().residual);

@@ -7,6 +7,14 @@
 
 namespace tunewright {
 
+Eigen::MatrixXd sample_rows(const Fit& fit) {
+    const auto n = static_cast<Eigen::Index>(fit.residual.size());
+    Eigen::MatrixXd J(n, static_cast<Eigen::Index>(fit.J.size()));
+    for (std::size_t k = 0; k < fit.J.size(); ++k)
+        J.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), n);
+    return J;
+}
+
 InputUnknowns joined(const InputUnknowns& one, const InputUnknowns& other) {
     if (one.deviation.size() == 0) return other;
     if (other.deviation.size() == 0) return one;
@@ -25,11 +33,9 @@ void take_out_unknowns(const InputUnknowns& unknowns, Fit& fit) {
     const Eigen::MatrixXd& N = unknowns.slopes;
     const Eigen::Index n = N.rows(), count = N.cols();
     if (count == 0 || fit.J.empty()) return;
-    const auto rows = static_cast<Eigen::Index>(fit.J[0].size()), columns = static_cast<Eigen::Index>(fit.J.size());
-    Eigen::MatrixXd J(n, columns);
-    for (Eigen::Index k = 0; k < columns; ++k)
-        J.col(k) = Eigen::Map<const Eigen::VectorXd>(fit.J[static_cast<std::size_t>(k)].data(), n);
-    const double freedom = std::max(0.2 * static_cast<double>(n), static_cast<double>(n - columns) - 0.5 * count);
+    const auto rows = static_cast<Eigen::Index>(fit.J[0].size());
+    const Eigen::MatrixXd J = sample_rows(fit);
+    const double freedom = std::max(0.2 * static_cast<double>(n), static_cast<double>(n - J.cols()) - 0.5 * count);
     const double variance = std::max(kVarianceFloor, fit.sse / freedom);
     const Eigen::VectorXd known = std::sqrt(variance) * unknowns.deviation.cwiseInverse();
     const Eigen::VectorXd known_rest = known.cwiseProduct(unknowns.rest);

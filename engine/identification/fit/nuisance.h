@@ -15,6 +15,9 @@ struct InputUnknowns {
     Eigen::VectorXd rest;       ///< k: mean of the prior knowledge minus the estimate
 };
 
+/// The rows of fit.J that are samples: n x its columns.
+Eigen::MatrixXd sample_rows(const Fit& fit);
+
 /// The unknowns of both.
 InputUnknowns joined(const InputUnknowns& one, const InputUnknowns& other);
 

@@ -66,15 +66,6 @@ Eigen::MatrixXd slopes_of_moves(const CleanRecord& r, const Fit& fit, std::span<
     return N;
 }
 
-/// The rows of fit.J that are samples.
-Eigen::MatrixXd of_samples(const Fit& fit) {
-    const auto n = static_cast<Eigen::Index>(fit.residual.size());
-    Eigen::MatrixXd J(n, static_cast<Eigen::Index>(fit.J.size()));
-    for (std::size_t k = 0; k < fit.J.size(); ++k)
-        J.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), n);
-    return J;
-}
-
 /// Estimates shape, linear coefficients and times together.
 class JointFit {
 public:
@@ -149,7 +140,7 @@ private:
     /// Information of the record about the times, given the model's parameters: their inverse covariance, each time in
     /// its own standard deviations.
     Eigen::MatrixXd seen_of(const Eigen::MatrixXd& N) const {
-        const Eigen::MatrixXd J = of_samples(fit_), of_both = gram(J, N);
+        const Eigen::MatrixXd J = sample_rows(fit_), of_both = gram(J, N);
         const Eigen::MatrixXd inverse = inverse_of(gram(J, J) + ridge(J));
         Eigen::MatrixXd seen = gram(N, N) - of_both.transpose() * inverse * of_both;
         for (Eigen::Index i = 0; i < seen.rows(); ++i)
@@ -183,7 +174,7 @@ private:
         double lambda = 1e-3;
         for (int i = 0; i < kMaxIterations && !stop_.stop_requested(); ++i) {
             jacobian({&record_, {}}, fit_);
-            const Eigen::MatrixXd J = of_samples(fit_), N = slopes_of_moves(record_, fit_, moves_);
+            const Eigen::MatrixXd J = sample_rows(fit_), N = slopes_of_moves(record_, fit_, moves_);
             Eigen::MatrixXd both(J.rows(), J.cols() + N.cols());
             both << J, N;
             Eigen::MatrixXd normal = gram(both, both);

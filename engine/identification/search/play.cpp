@@ -123,12 +123,10 @@ private:
 
 /// The part that the columns N have in the Gauss-Newton step of the model and them.
 Eigen::VectorXd step_with_model(const Fit& fit, const Eigen::MatrixXd& N) {
-    const auto n = N.rows(), m = static_cast<Eigen::Index>(fit.J.size());
-    Eigen::MatrixXd all(n, m + N.cols());
-    for (Eigen::Index k = 0; k < m; ++k)
-        all.col(k) = Eigen::Map<const Eigen::VectorXd>(fit.J[static_cast<std::size_t>(k)].data(), n);
-    all.rightCols(N.cols()) = N;
-    return least_squares(all, Eigen::Map<const Eigen::VectorXd>(fit.residual.data(), n)).tail(N.cols());
+    const Eigen::MatrixXd J = sample_rows(fit);
+    Eigen::MatrixXd all(N.rows(), J.cols() + N.cols());
+    all << J, N;
+    return least_squares(all, Eigen::Map<const Eigen::VectorXd>(fit.residual.data(), N.rows())).tail(N.cols());
 }
 
 /// The play's width, and with `open` its share ahead, for all samples: Gauss-Newton on them together with the model,
